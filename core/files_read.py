@@ -10,14 +10,14 @@ _told: set[Path] = set()
 
 
 def listen(listener: Callable[[Path], None] | None) -> None:
-    """Have each file told that is read from now on; None: no file is told."""
+    """Call `listener` with each file that is read from now on; None: call nothing."""
     global _listener
     _listener = listener
     _told.clear()
 
 
 def tell(path: Path) -> None:
-    """A file is read."""
+    """Report to the listener that a file is read."""
     if _listener is not None and path not in _told:
         _told.add(path)
         _listener(path)

@@ -120,7 +120,10 @@ _LONGEST_NAME = 32
 
 
 def beside_of(path: Path) -> Path:
-    """A new name beside `path` for what is to become it; what a killed program leaves is known by it."""
+    """Make a new name beside `path` for a file that will replace it.
+
+    Leftovers of a killed program are recognised by it.
+    """
     return path.with_name(f".{_stem(path.name)}.{secrets.token_hex(4)}.part")
 
 
@@ -132,7 +135,7 @@ def _stem(name: str) -> str:
 
 @contextmanager
 def folder_beside(to: Path) -> Iterator[Path]:
-    """Make a folder beside `to` to be filled, then renamed to it; it goes in the end, with all that is left in it.
+    """Make a folder beside `to` to be filled and renamed to it; it is removed in the end with all that is left in it.
 
     Raises
     ------
@@ -150,7 +153,7 @@ def folder_beside(to: Path) -> Iterator[Path]:
 
 
 def make_folder(path: Path) -> Path:
-    """Make the folder `path` with its parents, if it is not there, and see that it can be written to.
+    """Make the folder `path` with its parents if it is missing, and check that it can be written to.
 
     Raises
     ------
@@ -174,7 +177,7 @@ def make_inner_folder(folder: Path, name: str) -> Path:
 
 
 def vanished(folder: Path) -> InputError:
-    """The sentence for a project whose folder was moved, or is on a disk that was taken out."""
+    """Make the error for a project whose folder was moved, or is on a disk that was taken out."""
     return InputError(
         Message("project.vanished", "the project's folder is gone; none is made in its place"),
         where=folder,
@@ -183,7 +186,7 @@ def vanished(folder: Path) -> InputError:
 
 
 def cannot_write(path: Path, error: OSError) -> InputError:
-    """The sentence for a file or folder that could not be written."""
+    """Make the error for a file or folder that could not be written."""
     if isinstance(error, HeldOpen):
         path = Path(error.filename2 or error.filename or path)  # of several files the one that is held
     known = _HELD_OPEN if is_held(error) else _TOO_LONG if _is_too_long(path, error) else _REASONS.get(error.errno or 0)

@@ -7,7 +7,7 @@ import sys
 
 
 def main() -> int:
-    """Write the triangles as binary glTF."""
+    """Write the triangles of a STEP file as binary glTF."""
     sys.modules["trimesh"] = None  # type: ignore[assignment]  # cascadio would load it, and scipy, to tell it of itself
     import cascadio
 

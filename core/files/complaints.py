@@ -38,7 +38,7 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 
 
 class Clash(WrongValue):
-    """Two keys of one table that contradict each other; told as a complaint about `key`.
+    """Error that two keys of one table contradict each other; shown as a complaint about `key`.
 
     Raise it from a model's validator; `what` continues the sentence that the key begins.
     """
@@ -49,7 +49,7 @@ class Clash(WrongValue):
 
 
 def checked(schema: type[_Schema], tables: object, path: Path) -> _Schema:
-    """What `path` holds, by a model or a union of models; InputError for the most telling of all that is wrong.
+    """Check the content of `path` against a model or a union of models; InputError for the most telling error.
 
     The `description` of a field completes "… is <value>, not <description>".
     """
@@ -60,7 +60,7 @@ def checked(schema: type[_Schema], tables: object, path: Path) -> _Schema:
 
 
 def checked_json(schema: type[_Schema], tables: object, path: Path) -> _Schema:
-    """As `checked`, by the rules of JSON: lists become tuples and sets there, and tables dataclasses.
+    """Check as `checked`, by the rules of JSON: lists become tuples and sets there, and tables dataclasses.
 
     A dataclass is its own schema: its fields are annotated with what they may hold.
     """
@@ -82,7 +82,7 @@ def _adapter(schema: type[_Schema]) -> TypeAdapter[_Schema]:
 
 @contextmanager
 def fitting(path: Path, *, todo: Message | str = "") -> Iterator[None]:
-    """Tell as InputError that values of `path`, each of its kind, do not fit each other, which the model refuses."""
+    """Raise InputError where a model refuses values of `path` that are each of its kind but do not fit each other."""
     try:
         yield
     except (ValueError, TypeError, LookupError, OverflowError) as error:

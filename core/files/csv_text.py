@@ -14,14 +14,14 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def csv_text(rows: Iterable[Sequence[Any]]) -> str:
-    """The rows as text, text that would be a formula made harmless."""
+    """Write rows as CSV text, with text that would be a formula made harmless."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([harmless(cell) for cell in row] for row in rows)
     return text.getvalue()
 
 
 def harmless_table(text: str, separator: str) -> str:
-    """A table of texts as it was, but for cells that would be formulas; those that are numbers stay."""
+    """Make cells of a text table that would be formulas harmless; those that are numbers stay."""
     rows = csv.reader(text.splitlines(), delimiter=separator)
     out = io.StringIO()
     writer = csv.writer(out, delimiter=separator, lineterminator="\n")
@@ -37,7 +37,7 @@ def _is_number(text: str) -> bool:
 
 
 def harmless(cell: Any) -> Any:
-    """A cell that no spreadsheet takes for a formula: such a text stands behind an apostrophe; numbers stay numbers.
+    """Put an apostrophe before a cell that a spreadsheet would take for a formula; numbers stay numbers.
 
     Control characters are written out.
 

@@ -24,7 +24,7 @@ LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Hold `folder` for as long as this lasts; the system lets go of it even if the program is killed.
+    """Lock `folder` for as long as this lasts; the system releases it even if the program is killed.
 
     The lock is of the folder itself and leaves no file; on Windows, which locks files only, of the hidden file HELD.
 
@@ -70,7 +70,7 @@ def _hold(handle: int) -> bool:
 
 
 def wait_for(handle: int) -> None:
-    """Wait until an open file or folder is held by this program alone, until it is closed.
+    """Wait until this program alone holds the lock of an open file or folder, until that is closed.
 
     A disk of the network that cannot lock, and Windows, go without.
     """
@@ -83,7 +83,7 @@ def wait_for(handle: int) -> None:
 
 
 def sweep_leftovers(folder: Path) -> None:
-    """Remove what a killed program left half written in `folder`; call it with the folder locked."""
+    """Remove half written files of a killed program from `folder`; call it with the folder locked."""
     for path in folder.iterdir():
         if LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):
@@ -93,7 +93,7 @@ def sweep_leftovers(folder: Path) -> None:
 
 
 def sweep_within(folder: Path) -> None:
-    """The same in the folders within `folder`, but for those that another program writes to."""
+    """Sweep leftovers in the folders within `folder`, except those that another program is writing to."""
     for path in folder.iterdir():
         if path.is_dir() and not path.is_symlink():
             with contextlib.suppress(InputError, OSError), alone_in(path):

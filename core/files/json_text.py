@@ -18,7 +18,7 @@ WIDTH = 110
 
 
 def to_json(value: object) -> str:
-    """`value` as JSON text. Arrays become lists; NaN and infinity, which JSON does not have, become null."""
+    """Write `value` as JSON text. Arrays become lists; NaN and infinity, which JSON does not have, become null."""
     return _text(_plain(value), 0) + "\n"
 
 
@@ -28,7 +28,7 @@ def write_json(path: Path, value: object) -> None:
 
 
 def rounded(values: ArrayLike, digits: int) -> Any:
-    """Nested lists of `values`, rounded: for bulky arrays that only serve plots and residual tables."""
+    """Round `values` to nested lists: for bulky arrays that only serve plots and residual tables."""
     return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
 
 

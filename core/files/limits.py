@@ -45,7 +45,7 @@ _LONG_KEY = re.compile(rf"(?<![\w\-.])(?:[\w\-]++[ \t]*+\.[ \t]*+){{{DEPTH},}}")
 
 
 def check_file(path: Path, most: int = DATA_BYTES) -> None:
-    """InputError if `path` is there and is no regular file, or has more than `most` bytes.
+    """Raise InputError if `path` is there and is no regular file, or has more than `most` bytes.
 
     One that is missing, a folder, or behind a closed door is left to whoever opens it.
     """
@@ -64,7 +64,7 @@ def check_file(path: Path, most: int = DATA_BYTES) -> None:
 
 
 def check_bytes(size: int, path: Path, most: int) -> None:
-    """InputError if a file has more than `most` bytes."""
+    """Raise InputError if a file has more than `most` bytes."""
     if size > most:
         raise InputError(
             Message(
@@ -78,12 +78,12 @@ def check_bytes(size: int, path: Path, most: int) -> None:
 
 
 def check_json(text: str, path: Path | str) -> None:
-    """InputError if lists and tables are too deep in each other, or a number is too long."""
+    """Raise InputError if lists and tables of a JSON text are nested too deep, or a number is too long."""
     _check_text(_JSON_STRINGS.sub("", text), path)
 
 
 def check_toml(text: str, path: Path | str) -> None:
-    """The same for TOML, where a key of many parts is as deep."""
+    """Raise InputError if a TOML text is nested too deep, keys of many parts included, or a number is too long."""
     if len(text) > TOML_BYTES:
         check_bytes(len(text), Path(path), TOML_BYTES)
     bare = _TOML_STRINGS.sub("s", text)
@@ -93,7 +93,7 @@ def check_toml(text: str, path: Path | str) -> None:
 
 
 def check_pixels(width: int, height: int, path: Path, most: int = PIXELS) -> None:
-    """InputError if a picture declares no pixels, or more than `most`."""
+    """Raise InputError if a picture declares no pixels, or more than `most`."""
     if width < 1 or height < 1:
         raise InputError(Message("limits.no_pixels", "the picture has no pixels"), where=path)
     if width * height > most:

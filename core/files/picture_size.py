@@ -30,7 +30,7 @@ _TABLES = 1000
 
 @contextmanager
 def opened_head(path: Path) -> Iterator[Image.Image]:
-    """A picture whose head alone is read, however many pixels it declares; raises as Pillow does."""
+    """Open a picture to read its head alone, however many pixels it declares; raises as Pillow does."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # cameras have more pixels than it allows
         with Image.open(path) as picture:
@@ -38,7 +38,10 @@ def opened_head(path: Path) -> Iterator[Image.Image]:
 
 
 def declared_sizes(data: bytes) -> Iterator[tuple[int, int]]:
-    """(width, height) of each picture in a PNG, BMP, JPEG or TIFF file; none for other files, or a head that ends."""
+    """Yield (width, height) of each picture in a PNG, BMP, JPEG or TIFF file.
+
+    None for other files or a truncated head.
+    """
     try:
         if data.startswith(b"\x89PNG"):
             yield struct.unpack_from(">II", data, 16)

@@ -28,7 +28,10 @@ _WHITE = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
 
 
 def pgm_parts(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> tuple[bytes, memoryview]:
-    """Head and pixels of the file for (height, width) uint8 or uint16 grey levels; ValueError for anything else."""
+    """Make head and pixels of a PGM file of (height, width) uint8 or uint16 grey levels.
+
+    ValueError for anything else.
+    """
     if picture.ndim != 2 or picture.dtype not in _WHITE:
         raise ValueError(f"a picture is 2-D uint8 or uint16, not {picture.ndim}-D {picture.dtype}")
     height, width = picture.shape
@@ -37,7 +40,7 @@ def pgm_parts(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> tuple[bytes, m
 
 
 def read_pgm(data: bytes) -> NDArray[np.uint8] | NDArray[np.uint16] | None:
-    """The grey levels of an undamaged file, or None if its white is neither 255 nor 65535."""
+    """Read the grey levels of an undamaged PGM file; None if its white is neither 255 nor 65535."""
     width, height, white, begin = _head(data)
     if white == 255:
         return np.frombuffer(data, np.uint8, width * height, begin).reshape(height, width).copy()
@@ -100,7 +103,7 @@ if hasattr(cv2, "IMWRITE_PNG_FILTER"):  # since OpenCV 4.11; one filter for all 
 
 
 def is_picture(path: Path) -> bool:
-    """Whether the name of `path` is that of a picture; hidden files are none."""
+    """Whether `path` is named as a picture; hidden files are not."""
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".")
 
 
@@ -175,7 +178,7 @@ def _decoded(data: bytes, path: Path) -> NDArray[Any]:
 
 
 def compression_of(path: Path, channel: Channel | None = None) -> Compression:
-    """How far compression leaves a channel of a picture file off, see :func:`core.files.jpeg.compression_of`.
+    """Estimate the errors of a channel of a picture file by compression, see :func:`core.files.jpeg.compression_of`.
 
     Not at all for a file that is lossless or cannot be read.
     """
@@ -203,7 +206,7 @@ def write_picture(path: Path, picture: Picture) -> None:
 
 
 def picture_parts(path: Path, picture: Picture) -> tuple[bytes | memoryview, ...]:
-    """What the file `path` of a picture holds, in one piece or several; ValueError as `write_picture`."""
+    """Encode a picture for the file `path`, in one piece or several; ValueError as `write_picture`."""
     if path.suffix.lower() == ".pgm":
         return pgm_parts(picture)
     if path.suffix.lower() != ".png":

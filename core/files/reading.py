@@ -24,7 +24,7 @@ MISSING = Message("file.missing", "the file is missing")
 
 
 def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
-    """The bytes of a file; InputError if it cannot be read, is no file, or has more than `most` bytes."""
+    """Read the bytes of a file; InputError if it cannot be read, is no file, or has more than `most` bytes."""
     check_file(path, most)
     try:
         content = path.read_bytes()
@@ -35,17 +35,17 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
 
 
 def resolved(path: Path) -> Path:
-    """The whole path, links followed as far as they lead; unlike for Path.resolve, a circle of them is no error."""
+    """Resolve a path, links followed as far as they lead; unlike for Path.resolve, a circle of them is no error."""
     return Path(os.path.realpath(path))
 
 
 def file_hash(path: Path) -> str:
-    """SHA-256 in hex of what a file holds; raises as :func:`read_bytes`."""
+    """Compute SHA-256 in hex of the bytes of a file; raises as :func:`read_bytes`."""
     return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = None, most: int = TEXT_BYTES) -> str:
-    """The text of a UTF-8 file, without the mark some programs begin it with.
+    """Read the text of a UTF-8 file, without the mark some programs begin it with.
 
     Parameters
     ----------
@@ -74,12 +74,12 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
 
 
 def read_json(path: Path, *, todo: Message | None = None) -> Any:
-    """The content of a JSON file; InputError as `read_text`, or if it is no JSON."""
+    """Read the content of a JSON file; InputError as `read_text`, or if it is no JSON."""
     return json_of(read_text(path, todo=todo), path, todo=todo)
 
 
 def json_of(text: str, where: Path | str, *, todo: Message | None = None) -> Any:
-    """What a text of JSON says; InputError if it is none, too deep, or has characters that are none."""
+    """Parse a text of JSON; InputError if it is none, too deep, or has characters that are none."""
     check_json(text, where)
     try:
         value = json.loads(text)
@@ -94,12 +94,12 @@ def json_of(text: str, where: Path | str, *, todo: Message | None = None) -> Any
 
 
 def read_toml(path: Path, *, missing: Message = MISSING, todo: Message | None = None) -> dict[str, Any]:
-    """The tables of a TOML file; InputError as `read_text`, or if it is no TOML."""
+    """Read the tables of a TOML file; InputError as `read_text`, or if it is no TOML."""
     return toml_of(read_text(path, missing=missing, todo=todo, most=TOML_BYTES), path)
 
 
 def toml_of(text: str, where: Path | str) -> dict[str, Any]:
-    """The tables a text of TOML says; InputError if it is none, or too deep."""
+    """Parse the tables of a text of TOML; InputError if it is none, or too deep."""
     check_toml(text, where)
     try:
         return tomllib.loads(text)
@@ -109,7 +109,7 @@ def toml_of(text: str, where: Path | str) -> dict[str, Any]:
 
 
 def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[list[str]]:
-    """The cells of a CSV file's lines; InputError if a cell is longer than any is, or the lines are none of a table."""
+    """Parse the cells of a CSV file's lines; InputError if a cell is too long, or the lines are no table."""
     try:
         return list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
@@ -118,13 +118,13 @@ def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[lis
 
 
 def refused_path(error: Exception) -> InputError | None:
-    """The sentence for an error of the system that a path is to blame for, wherever it shows; None for any other."""
+    """Make the error for an error of the system that a path causes; None for any other."""
     if not isinstance(error, OSError) or error.errno not in _REFUSED or not isinstance(error.filename, str):
         return None
     return cannot_read(Path(error.filename), error)
 
 
 def cannot_read(path: Path, error: OSError | ValueError) -> InputError:
-    """The sentence for a file or folder that is there and cannot be read."""
+    """Make the error for a file or folder that is there and cannot be read."""
     reason = str(getattr(error, "strerror", "") or error)
     return InputError(Message("file.cannot_be_read", "cannot be read ({reason})", reason=reason), where=path)

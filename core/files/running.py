@@ -20,7 +20,7 @@ _CLOCK_S = 2.0
 
 
 class Kernel(Protocol):
-    """The functions of Windows that are used: those of kernel32, and the error of the last one."""
+    """Functions of Windows that are used: those of kernel32, and the error of the last one."""
 
     def OpenProcess(self, access: int, inherit: bool, pid: int, /) -> int | None: ...
     def WaitForSingleObject(self, handle: int, ms: int, /) -> int: ...
@@ -30,7 +30,7 @@ class Kernel(Protocol):
 
 
 def is_running(pid: int, since: datetime | None = None) -> bool:
-    """Whether the process `pid` runs; with `since`, also whether it ran then: numbers are given to others later on.
+    """Whether the process `pid` runs; with `since`, also whether it ran then: numbers are reused later.
 
     `os.kill(pid, 0)`, which asks elsewhere, would end the process on Windows.
     """
@@ -48,7 +48,7 @@ def is_running(pid: int, since: datetime | None = None) -> bool:
 
 
 def runs_on_windows(kernel: Kernel, pid: int, since: datetime | None) -> bool:
-    """As `is_running`, asking Windows.
+    """Whether the process runs, as `is_running`, on Windows.
 
     References
     ----------

@@ -44,7 +44,7 @@ READJUST = "readjust"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of the work.
+    """Step of the work: its name, what it reads and makes, and what it rests on.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Step:
     in_project: bool = False
 
     def wanted(self, there: Collection[str], asked: Collection[str]) -> bool:
-        """Whether it is to be done where there are pictures of the parts `there`, and these steps are asked for."""
+        """Whether the step is to be done with pictures of the parts `there`, if the steps `asked` are requested."""
         return all(part in there for part in self.reads) and (not self.on_request or self.name in asked)
 
 
@@ -124,7 +124,7 @@ GRAPH = (
 
 
 class Place(Protocol[Stop]):
-    """A recording set or a project while its steps are done."""
+    """Place where steps are done: a recording set or a project."""
 
     def wants(self, step: Step, /) -> bool:
         """Whether a step is to be done, now that those before it have been."""
@@ -134,7 +134,7 @@ class Place(Protocol[Stop]):
 
 
 def do_steps(place: Place[Stop]) -> Stop | None:
-    """Do every step that a place wants, in the order of work; what stopped it, if anything did."""
+    """Do every step that a place wants, in the order of work; return what stopped it, if anything did."""
     for step in GRAPH:
         if place.wants(step) and (stop := place.do(step)) is not None:
             return stop
@@ -150,14 +150,14 @@ PAGES = tuple(MAIN)
 
 
 def needed_by(page: str, *, shown: bool = False) -> tuple[str, ...]:
-    """Pages whose results must be there before the main step of a page; and those it shows, if asked for."""
+    """List pages whose results must be there before the main step of a page; and those it shows, if asked for."""
     step = next(step for step in GRAPH if step.name == MAIN[page])
     names = (*step.rests_on, *(step.shows if shown else ()))
     return tuple(dict.fromkeys(other.page for other in IN_PROJECT if other.name in names))
 
 
 def resting_on(result: str) -> tuple[str, ...]:
-    """Results that no longer hold once `result` is another. The report stays: it is whole, and says what it is of."""
+    """List results that become invalid once `result` changes. The report stays: it is whole, and says what it is of."""
     step = next((step for step in GRAPH if step.decides == result), None)
     return () if step is None else tuple(made for other in _behind(step) for made in other.makes)
 

@@ -87,7 +87,7 @@ KeptCause = Annotated[Source, PlainValidator(lambda kept: known_cause(_message(k
 
 
 def kept(message: Message | None) -> dict[str, Any] | str | None:
-    """A message as a file keeps it: a text alone if it has no code, null for none."""
+    """Convert a message for a file: a text alone if it has no code, null for none."""
     if message is None:
         return None
     return as_json(message) if message.code else str(message)
@@ -98,7 +98,7 @@ RESULT = ConfigDict(extra="ignore", strict=True, frozen=True)
 
 
 class ResultFile(BaseModel):
-    """A file of results, or a table in one."""
+    """File of results, or a table in one."""
 
     model_config = RESULT
 
@@ -107,7 +107,7 @@ _VECTOR = label("three finite numbers, not all zero")
 
 
 class PlaneRow(ResultFile):
-    """A plane π·X = 1, with all else that is kept of it."""
+    """Row of a plane π·X = 1, with all else that is stored of it."""
 
     pi: Row3 = Field(description=_VECTOR)
 
@@ -119,7 +119,7 @@ class PlaneRow(ResultFile):
 
 
 class CountedPose(ResultFile):
-    """A picture of a target: whether it counts, and where the target was in the camera's frame."""
+    """Picture of a target: whether it counts, and where the target was in the camera's frame."""
 
     name: str
     used: bool
@@ -128,19 +128,19 @@ class CountedPose(ResultFile):
     translation_mm: Row3
 
     def pose(self) -> Pose:
-        """Where the target was."""
+        """Make the pose of the target."""
         return Pose.from_vector([*self.rotation_vector, *self.translation_mm])
 
 
 def counted_pose(view: ViewQuality | PlanePose, **figures: Any) -> dict[str, Any]:
-    """The same as it is written, with its figures of merit."""
+    """Make the row of a view or pose, with its figures of merit."""
     vector = view.pose.vector
     head = {"name": view.name, "used": view.used, "reason": kept(view.reason)}
     return head | figures | {"rotation_vector": vector[:3], "translation_mm": vector[3:]}
 
 
 class BudgetRow(ResultFile):
-    """All of a row but its contribution, which each file calls by a key of its own."""
+    """Row of a budget without its contribution, which each file calls by a key of its own."""
 
     source: KeptCause
     point_mm: Finite | None = None
@@ -150,13 +150,13 @@ class BudgetRow(ResultFile):
     unit: str = "mm"
 
     def contributing(self, u: float) -> Contribution:
-        """The row, if it contributes `u`."""
+        """Make the row with the contribution `u`."""
         dof = math.inf if self.dof is None else self.dof
         return Contribution(self.source, u, self.point_mm, self.distribution, dof, self.value, self.unit)
 
 
 def row_tables(row: Contribution, key: str) -> dict[str, Any]:
-    """A row as it is written, its contribution under `key`; infinitely many degrees of freedom become null."""
+    """Make the table of a row, its contribution under `key`; infinitely many degrees of freedom become null."""
     return {
         "source": kept(row.words),
         key: row.u_mm,

@@ -55,7 +55,7 @@ def write_dfq(path: Path, content: ReportContent) -> None:
 
 
 def dfq_lines(content: ReportContent) -> list[str]:
-    """The lines of the file, without their ends."""
+    """Make the lines of the file, without their ends."""
     found = content.characteristics
     part = content.part or "not named"
     lines = [f"K0100 {len(found)}", f"K1001 {_cut(content.serial or part, 30)}", f"K1002 {_cut(part, _NAME)}"]

@@ -29,7 +29,7 @@ _COLOURS = {Outline: 5, SphereShape: 3, CylinderShape: 3, Curve: 1}
 
 
 def write_dxf(path: Path, geometry: Geometry) -> None:
-    """Write the geometry; the same gives the same bytes. InputError if it cannot be written."""
+    """Write the geometry as DXF; the same geometry gives the same bytes. InputError if it cannot be written."""
     kept = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True  # else the file names a clock and random numbers
     try:
@@ -49,7 +49,7 @@ def write_dxf(path: Path, geometry: Geometry) -> None:
 
 
 def layer_name(name: str) -> str:
-    """A feature's name without what DXF does not permit in the name of a layer."""
+    """Remove from a feature's name what DXF does not permit in the name of a layer."""
     return _FORBIDDEN.sub("_", name).strip() or "_"
 
 

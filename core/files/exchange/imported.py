@@ -22,7 +22,7 @@ COEFFICIENTS_USED = 5
 def imported_camera(
     path: Path, image_size: tuple[int, int], matrix: ArrayLike, distortion: Sequence[float], rms_px: float = math.nan
 ) -> CameraCalibration:
-    """The calibration in `path`, made by another program.
+    """Make the calibration in `path`, which another program has made.
 
     Raises
     ------

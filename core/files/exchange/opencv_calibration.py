@@ -36,7 +36,7 @@ SKEW_NOTE = (
 
 
 def write_opencv(path: Path, calibration: CameraCalibration, at: datetime) -> None:
-    """Write `path`, as JSON if it ends in .json, else as YAML; InputError if it cannot be written."""
+    """Write a calibration for OpenCV, as JSON if `path` ends in .json, else as YAML; InputError if that fails."""
     camera = calibration.camera
     form = cv2.FileStorage_FORMAT_JSON if path.suffix.lower() == ".json" else cv2.FileStorage_FORMAT_YAML
     storage = cv2.FileStorage("", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY | form)

@@ -69,7 +69,7 @@ def write_qif(path: Path, content: ReportContent) -> None:
 
 
 def qif_document(content: ReportContent) -> Element:
-    """The document's root element."""
+    """Make the root element of a QIF document."""
     ids = count(1)
     component, results, device, standard = (next(ids) for _ in range(4))
     rows = [(one, [next(ids) for _ in range(4)]) for one in content.characteristics]

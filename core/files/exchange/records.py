@@ -45,7 +45,7 @@ FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "le
 
 
 def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
-    """One fact of the result called `of`: FACT_COLUMNS, numbers in full, words in the reader's language."""
+    """Make the row of one fact of the result called `of`: FACT_COLUMNS, numbers in full, words in `words`' language."""
     low, high = (None, None) if fact.interval is None else map(finite, fact.interval)
     value = finite(fact.value) if isinstance(fact.value, float) else fact.value
     return {
@@ -61,7 +61,7 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
 
 
 def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fact]]:
-    """All that is told of the studies, what stands in tables value by value, each with what it is told of."""
+    """List all facts of the studies, the values in their tables included, each with the name of its result."""
     return [
         (study_title(study, words), fact)
         for study in content.studies
@@ -70,17 +70,17 @@ def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fa
 
 
 def told_facts(content: ReportContent) -> list[tuple[str, Fact]]:
-    """All that is told of what the result rests on, each with what it is told of."""
+    """List all facts of what the result rests on, each with the name of its result."""
     return [(of, fact) for of, facts in content.facts.items() for fact in facts]
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:
-    """The unit a characteristic is handed over in, and the factor to it."""
+    """Choose the unit in which a characteristic is exported, and the factor to it."""
     return ("deg", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
 
 
 def result_row(one: Characteristic) -> dict[str, Any]:
-    """One characteristic: RESULT_COLUMNS."""
+    """Make the row of one characteristic: RESULT_COLUMNS."""
     unit, factor = unit_of(one)
     limits = one.limits
     return {
@@ -101,7 +101,7 @@ def result_row(one: Characteristic) -> dict[str, Any]:
 
 
 def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
-    """What the uncertainty of one characteristic is made of: `share` is of the variance, 0 to 1."""
+    """Make the rows of the uncertainty budget of one characteristic; `share` is of the variance, 0 to 1."""
     unit, factor = unit_of(one)
     variance = sum(row.u_mm**2 for row in one.budget)
     return [
@@ -123,12 +123,12 @@ def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
 
 
 def degrees_of_freedom(one: Characteristic) -> float | None:
-    """Effective degrees of freedom of u; None for infinitely many, or where there is no budget."""
+    """Compute the effective degrees of freedom of u; None for infinitely many, or where there is no budget."""
     return finite(effective_dof(one.budget)) if one.budget else None
 
 
 def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
-    """Every frame of the recording: FRAME_COLUMNS."""
+    """Make one row for every frame of the recording: FRAME_COLUMNS."""
     return [
         {name: plain(getattr(frame, name)) for name in FRAME_COLUMNS} | {"reason": str(frame.reason or "")}
         for frame in content.frames
@@ -136,7 +136,7 @@ def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
 
 
 def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
-    """Name and value of all that the result rests on besides the pictures."""
+    """List name and value of all settings and calibrations that the result rests on besides the pictures."""
     known = {
         "report": content.report_id,
         "verdict": content.results.verdict or "none",
@@ -167,22 +167,22 @@ def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
 
 
 def finite(value: float) -> float | None:
-    """The number, or None for what is not one."""
+    """Return the number if it is finite, else None."""
     return float(value) if math.isfinite(value) else None
 
 
 def plain(value: Any) -> Any:
-    """A value as files hold it: no NaN, no infinity."""
+    """Convert a value to what files hold: no NaN, no infinity."""
     return finite(value) if isinstance(value, float) else value
 
 
 def one_line(text: str) -> str:
-    """The text without line ends and control characters, for formats that have one line a field."""
+    """Remove line ends and control characters from a text, for formats that have one line a field."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def as_table(columns: Sequence[str], rows: Sequence[Row]) -> list[list[Any]]:
-    """A head line and the rows, in the order of the columns."""
+    """Make a table of a head line and the rows, in the order of the columns."""
     return [list(columns), *([row[name] for name in columns] for row in rows)]
 
 

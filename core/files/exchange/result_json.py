@@ -23,7 +23,9 @@ def write_result_json(path: Path, content: ReportContent) -> None:
 
 
 def result_tables(content: ReportContent) -> dict[str, Any]:
-    """What the file holds. Lengths in mm, angles in degrees, temperatures in °C; null: not known, or no limit."""
+    """Make the tables of the file. Lengths in mm, angles in degrees, temperatures in °C; null: not known, or no
+    limit.
+    """
     return {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,

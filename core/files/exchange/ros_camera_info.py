@@ -21,7 +21,7 @@ MODELS = ("plumb_bob", "rational_polynomial")
 
 
 def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
-    """Write camera_info.yaml.
+    """Write a calibration for ROS as camera_info.yaml.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera_info(path: Path) -> CameraCalibration:
-    """Read a calibration of ROS.
+    """Read a calibration of ROS from camera_info.yaml.
 
     Raises
     ------

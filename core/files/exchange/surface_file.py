@@ -29,14 +29,14 @@ TOLERANCE_MM = 0.1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OtherSurface:
-    """A surface of another program: triangles, or else points."""
+    """Surface made by another program: triangles, or else points."""
 
     points: SurfacePoints
     triangles: Triangles | None = None
 
 
 def read_surface(path: Path) -> OtherSurface:
-    """Points or triangles of a PLY, STL, STEP or E57 file in mm; E57 in the metres its standard asks for.
+    """Read points or triangles of a PLY, STL, STEP or E57 file in mm; E57 in the metres its standard asks for.
 
     A PLY with faces is taken as triangles, unless its vertices have a `sigma`: then they were measured. Points may have
     normals (nx, ny, nz) and `sigma` in mm.

@@ -10,7 +10,7 @@ from core.files.atomic import write_bytes
 
 
 def put(parent: Element, element_name: str, text: str = "", /, **attributes: str) -> Element:
-    """A new last child, its text without what XML cannot hold."""
+    """Append a new child, with its text freed of what XML cannot hold."""
     element = ElementTree.SubElement(parent, element_name, attributes)
     if text:
         element.text = "".join(c for c in text if c.isprintable() or c in "\t\n")
@@ -24,6 +24,6 @@ def write_document(path: Path, root: Element) -> None:
 
 
 def decimal(value: float) -> str:
-    """xs:decimal: no exponent."""
+    """Write a number as xs:decimal: no exponent."""
     text = f"{value:.12f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text

@@ -25,7 +25,7 @@ _Name = Annotated[str, Field(min_length=1, max_length=80)]
 
 
 class RegionTable(Table):
-    """Where a feature's points are: one of the keys."""
+    """Region of a feature's points: one of these keys."""
 
     number: int | None = Field(None, ge=1, le=8, description="a whole number from 1 to 8: the n-th largest plane face")
     polygon_px: list[_Pair] | None = Field(None, min_length=3, description="a list of three or more [u, v] in pixels")
@@ -57,7 +57,7 @@ class RegionTable(Table):
 
 
 class FiltersTable(Table):
-    """Which of a region's points are used."""
+    """Filters that select points of a region."""
 
     sigma_max_mm: _Above | None = Field(None, description=_A_LENGTH)
     margin_mm: _NotNegative = Field(1.5, description=_NOT_BELOW_0)
@@ -66,7 +66,7 @@ class FiltersTable(Table):
 
 
 class LimitsTable(Table):
-    """The requirement on a result: a nominal value with ± a tolerance, or with a lower and an upper deviation."""
+    """Requirement on a result: a nominal value with ± a tolerance, or with a lower and an upper deviation."""
 
     nominal_mm: _Number | None = Field(None, description=_A_NUMBER)
     tolerance_mm: _NotNegative | None = Field(None, description=_NOT_BELOW_0)
@@ -79,7 +79,7 @@ class LimitsTable(Table):
 
     @property
     def in_degrees(self) -> bool:
-        """Whether they are of an angle."""
+        """Whether the limits are of an angle."""
         return any(getattr(self, key) is not None for key in type(self).model_fields if key.endswith("_deg"))
 
     @model_validator(mode="after")
@@ -121,7 +121,7 @@ class LimitsTable(Table):
 
 
 class CutTable(Table):
-    """One measurement in a section."""
+    """Table of one measurement in a section."""
 
     name: _Name = Field(description="a name")
     kind: Literal["height", "distance", "radius"] = Field(description='"height", "distance" or "radius"')
@@ -130,7 +130,7 @@ class CutTable(Table):
 
 
 class SectionTable(Table):
-    """A cross-section."""
+    """Table of a cross-section."""
 
     line_px: list[_Pair] | None = Field(None, min_length=2, max_length=2, description="two pixels [[u, v], [u, v]]")
     point_mm: _Triple | None = Field(None, description="a place [x, y, z] in mm, in part coordinates")
@@ -150,7 +150,7 @@ class SectionTable(Table):
 
 
 class DeviationTable(Table):
-    """A comparison with a nominal surface."""
+    """Table of a comparison with a nominal surface."""
 
     nominal: str = Field(min_length=1, description="the name of a STEP file, or of an STL file in mm, beside this file")
     align: Literal["best fit", "frame", "as measured"] = Field(
@@ -161,13 +161,13 @@ class DeviationTable(Table):
 
 
 class PositionTable(Table):
-    """Where an axis or a centre should be."""
+    """Table of the nominal position of an axis or a centre."""
 
     at_mm: _Triple = Field(description="a place [x, y, z] in mm, in part coordinates")
 
 
 class FeatureTable(Table):
-    """[[feature]]."""
+    """Table [[feature]]."""
 
     name: _Name = Field(description="a name of 1 to 80 characters")
     kind: str = Field(description=f"{', '.join(kind.name for kind in KINDS[:-1])} or {KINDS[-1].name}")
@@ -200,7 +200,7 @@ class FeatureTable(Table):
 
 
 class FrameTable(Table):
-    """[frame]."""
+    """Table [frame]."""
 
     primary: _Name = Field(description=_A_NAME)
     secondary: _Name = Field(description=_A_NAME)
@@ -214,7 +214,7 @@ _AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 
 
 class TemperatureTable(Table):
-    """[temperature]."""
+    """Table [temperature]."""
 
     part_celsius: _Celsius = Field(description=_A_TEMPERATURE)
     u_part_celsius: _NotNegative = Field(description=_NOT_BELOW_0)
@@ -227,14 +227,14 @@ class TemperatureTable(Table):
 
 
 class CauseTable(Table):
-    """One row of the budget of a master's measurement."""
+    """Table of one row of the budget of a master's measurement."""
 
     source: _Name = Field(description="what it comes from")
     u_mm: _NotNegative = Field(description=_NOT_BELOW_0)
 
 
 class MasterTable(Table):
-    """[master]: what it measures is given as numbers, or taken from an inspection.json of it."""
+    """Table [master]: its measured value is given as numbers, or taken from an inspection.json of it."""
 
     name: _Name = Field(description="a name")
     certified_mm: _Above = Field(description=_A_LENGTH)
@@ -275,7 +275,7 @@ class MasterTable(Table):
 
 
 class PlanTables(Table):
-    """What plan.toml holds."""
+    """Tables of plan.toml."""
 
     k: float = Field(default=2.0, ge=1, le=5, allow_inf_nan=False, description="a coverage factor from 1 to 5")
     frame: FrameTable | None = Field(default=None, description="a table [frame] with primary and secondary")

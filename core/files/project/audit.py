@@ -55,7 +55,7 @@ _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digit
 
 
 class Signed(Protocol):
-    """A person who has signed in."""
+    """Person who has signed in, with name and role."""
 
     @property
     def name(self) -> str: ...
@@ -65,7 +65,7 @@ class Signed(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One entry.
+    """Entry of an audit trail.
 
     Parameters
     ----------
@@ -107,7 +107,10 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Trail:
-    """The entries as far as they can be read, and what is wrong with the chain; `torn`: the last line has no end."""
+    """Entries of an audit trail as far as they can be read, and faults of the chain.
+
+    `torn`: the last line has no end.
+    """
 
     entries: tuple[Entry, ...] = ()
     problems: tuple[Message, ...] = ()
@@ -115,7 +118,7 @@ class Trail:
 
     @property
     def head(self) -> str:
-        """The hash of the last entry, which stands for all of them; nothing where there is none."""
+        """Hash of the last entry, which stands for all of them; "" where there is none."""
         return self.entries[-1].hash if self.entries else ""
 
 
@@ -168,7 +171,7 @@ def append(
 
 
 def read_trail(folder: Path) -> Trail:
-    """The trail of a project, checked link by link; InputError if its file cannot be read at all."""
+    """Read the audit trail of a project, checked link by link; InputError if its file cannot be read at all."""
     path = folder / AUDIT
     if not path.exists():
         return Trail()
@@ -196,7 +199,7 @@ def read_trail(folder: Path) -> Trail:
 
 
 def trail_table(trail: Trail) -> str:
-    """The trail as CSV: one row a change, or one an entry without any."""
+    """Write the trail as CSV: one row a change, or one an entry without any."""
     table: list[tuple[object, ...]] = [
         ("n", "at", "who", "host", "by", "role", "what", "field", "old", "new", "why", "hash")
     ]

@@ -47,7 +47,7 @@ IMPORTED = "imported"
 
 @dataclass(frozen=True, slots=True)
 class StoredCalibration:
-    """One calibration of the history, in short.
+    """Summary of one calibration of the history.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def keep_camera(
     settings: Mapping[str, Any],
     inputs: Mapping[str, str] | None = None,
 ) -> str:
-    """Put a camera's calibration into the history; one that is there already becomes the newest. Returns its id.
+    """Add a camera's calibration to the history; one that is there already becomes the newest. Returns its id.
 
     `settings` are what it was told, as in run.json: of another program's, the file, as IMPORTED. `inputs` are the
     hashes of what it was made from: pictures, or that file.
@@ -129,7 +129,7 @@ def keep_planes(
     settings: Mapping[str, Any] | None = None,
     inputs: Mapping[str, str] | None = None,
 ) -> str:
-    """Put a calibration of the light planes into the history, with what its poses showed, and the camera it rests on.
+    """Add a calibration of the light planes to the history, with the features of its poses.
 
     Returns its id; one that is there already becomes the newest.
 
@@ -156,7 +156,7 @@ def keep_planes(
 
 
 def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
-    """Every calibration that was kept and is still there, the newest first.
+    """List every calibration that was stored and is still there, the newest first.
 
     Raises
     ------
@@ -173,13 +173,13 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
 
 
 def read_stored(project_folder: Path, kind: Kind, id_: str) -> StoredCalibration | None:
-    """One calibration of the history in short; None if nothing is known of it, InputError if that is damaged."""
+    """Read the summary of one calibration of the history; None if there is none, InputError if it is damaged."""
     path = _path(project_folder / FOLDER, kind, id_).with_suffix(_KEPT)
     return _read_about(path) if path.exists() else None
 
 
 def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
-    """A camera's calibration of the history; InputError if it is not there, or damaged."""
+    """Read a camera's calibration from the history; InputError if it is not there, or damaged."""
     path = _found(project_folder, "camera", id_)
     calibration = read_camera(path)
     _check_id(path, camera_id(calibration.camera), id_)
@@ -187,7 +187,7 @@ def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
 
 
 def read_stored_planes(project_folder: Path, id_: str, camera: Camera) -> FanCalibration:
-    """Light planes of the history; InputError if they are not there, damaged, or rest on another camera."""
+    """Read light planes from the history; InputError if they are not there, damaged, or rest on another camera."""
     path = _found(project_folder, "planes", id_)
     calibration = read_planes(path, camera)
     _check_id(path, planes_id(calibration.fan), id_)
@@ -195,7 +195,7 @@ def read_stored_planes(project_folder: Path, id_: str, camera: Camera) -> FanCal
 
 
 def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...]:
-    """What the poses of a calibration of light planes showed; InputError if it is not there, or damaged."""
+    """Read the features of the poses of a stored calibration of light planes; InputError if missing or damaged."""
     return read_poses(_found(project_folder, "planes", id_).with_suffix(".npz"), id_)
 
 

@@ -17,7 +17,7 @@ _OF_SAVING = ("schema_version", "version", "created", "saved")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One field that differs, by its name in project.json, with its values there as JSON; nothing: it is not there."""
+    """Change of one field of project.json, by its name, with its values as JSON; "": it is not there."""
 
     field: str
     old: str
@@ -26,7 +26,7 @@ class Change:
 
 
 def differences(before: ProjectFile | None, after: ProjectFile) -> tuple[Change, ...]:
-    """What `after` says otherwise than `before`; all that it says where there is nothing before it."""
+    """List the fields of `after` that differ from `before`; all of them where there is nothing before."""
     old, new = ({} if file is None else dict(_fields(_decided(file))) for file in (before, after))
     names = dict.fromkeys((*old, *new))
     return tuple(Change(name, old.get(name, ""), new.get(name, "")) for name in names if old.get(name) != new.get(name))

@@ -28,7 +28,7 @@ Id = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", description="the id of a 
 
 @dataclass(frozen=True, slots=True)
 class ProjectInfo:
-    """What the report says of the job. Temperatures in °C, None where nobody took them."""
+    """Data of the job that the report states. Temperatures in °C, None where nobody took them."""
 
     name: str = ""
     part: str = ""
@@ -44,7 +44,7 @@ class ProjectInfo:
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """The folders of pictures to measure from; nothing where there is none yet.
+    """Folders of pictures to measure from; "" where there is none yet.
 
     Inside the project's folder they are named relative to it, with forward slashes, so that a project can be moved;
     elsewhere in full. `stored_source` and `source_folder` go from one to the other.
@@ -63,7 +63,7 @@ EARLIER_CALIBRATIONS = {"fan": "planes"}
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """Ids of the calibrations to measure with, in the project's history; nothing where none is accepted yet."""
+    """Ids of the calibrations to measure with, in the project's history; "" where none is accepted yet."""
 
     camera: Id = ""
     planes: Id = ""
@@ -72,7 +72,7 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """The thickness of one scan in a series of the same part: in mm, with the expanded uncertainty U = k·u.
+    """Thickness of one scan in a series of the same part: in mm, with the expanded uncertainty U = k·u.
 
     `doubts` are the facts by which it proves nothing; none of repeats that were added before these were kept.
     """
@@ -88,14 +88,14 @@ class Repeat:
 
     @property
     def values(self) -> dict[str, Any]:
-        """By their names in files; without doubts as files of earlier versions have it."""
+        """Values by their names in files; without doubts as in files of earlier versions."""
         values = asdict(self)
         return values if self.doubts else {name: value for name, value in values.items() if name != "doubts"}
 
 
 @dataclass(frozen=True, slots=True)
 class KeptStudy:
-    """A study kept in the project: `id` names its folder below studies, `title` tells what it was made of.
+    """Study stored in the project: `id` names its folder below studies, `title` its kind and input.
 
     `included` puts it into the report.
     """
@@ -115,7 +115,7 @@ class KeptStudy:
 
 @dataclass(frozen=True, slots=True)
 class ReportChoices:
-    """How the report is made: the sections left out, the paper, the language of its fixed words, the template file.
+    """Options of the report: the sections left out, the paper, the language of its fixed words, the template file.
 
     `language`: nothing is that of the window or command that makes it. `template` is named as `Sources` are: within the
     project relative to its folder, elsewhere in full; nothing: none.
@@ -135,7 +135,7 @@ class ReportChoices:
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """Everything the user decides. Two projects are equal if every field is, and then have one hash.
+    """All settings and choices of the user. Two projects are equal if every field is, and then have one hash.
 
     `rejected`: ids of calibrations that were found and are not wanted. `inspection`: the features measured beside the
     thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones. `artefacts`: those
@@ -157,13 +157,13 @@ class Project:
     callouts: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def printed_in(self, language: str) -> Project:
-        """The same, its report in this language unless it states one."""
+        """Set the language of the report, unless the project states one."""
         return replace(self, report=replace(self.report, language=self.report.language or language))
 
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """One finished result: its own key, the keys of all it rests on by their names, and when it was finished."""
+    """Record of one finished result: its key, the keys of all it rests on by their names, and when it was finished."""
 
     key: str
     rests_on: Annotated[Mapping[str, str], Field(description="a table of texts")] = field(
@@ -175,7 +175,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class ProjectFile:
-    """What project.json holds; `results` by step.
+    """Content of project.json; `results` by step.
 
     Two are equal if project and results are. `created`, `saved`: when the project was made and last written; None if
     that is not known.
@@ -188,5 +188,5 @@ class ProjectFile:
 
 
 def new_project(name: str) -> Project:
-    """A project with nothing measured, for the rig of the paper."""
+    """Make a project with nothing measured, for the rig of the paper."""
     return Project(ProjectInfo(name=name))

@@ -90,7 +90,7 @@ def create_project(folder: Path, file: ProjectFile) -> None:
 def write_project(
     folder: Path, file: ProjectFile, *, keep_s: float = 0.0, why: str = "", by: Signed | None = None
 ) -> None:
-    """Write project.json, whole or not at all; what it said before goes to backups. Left alone if it says the same.
+    """Write project.json, whole or not at all; its earlier content goes to backups. Left alone if it says the same.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def write_project(
 
 
 def require_project_folder(folder: Path) -> None:
-    """InputError if nothing of a project is in `folder`: no later step may make a hollow one there."""
+    """Raise InputError if nothing of a project is in `folder`: no later step may make an empty one there."""
     if not any((folder / name).exists() for name in (PROJECT, AUTOSAVE, BACKUPS)):
         raise vanished(folder)
 
@@ -143,7 +143,7 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
 
 
 def require_free(to: Path) -> None:
-    """InputError if there is something already where the folder of a project is to be made."""
+    """Raise InputError if there is something already where the folder of a project is to be made."""
     if to.exists():
         raise InputError(
             Message("project.folder_taken", "is there already"),
@@ -153,19 +153,19 @@ def require_free(to: Path) -> None:
 
 
 def free_folder(base: Path, name: str, fits: Callable[[Path], bool] = lambda path: not path.exists()) -> Path:
-    """The first of NAME, NAME 2, NAME 3, … in `base` that fits: that is not there, unless something else is asked."""
+    """Find the first of NAME, NAME 2, NAME 3, … in `base` that fits, by default: that does not exist."""
     return next(path for n in count(1) if fits(path := base / (name if n == 1 else f"{name} {n}")))
 
 
 def put_opener(folder: Path) -> None:
-    """Put NAME.trisect into a project's folder, if none is there; a folder that cannot be written to does without."""
+    """Write NAME.trisect into a project's folder, if none is there; skipped in a folder that cannot be written to."""
     with suppress(InputError, OSError):
         if next(folder.glob(f"*{OPENER}"), None) is None:
             write_text(folder / f"{resolved(folder).name}{OPENER}", _OPENER_SAYS, sync=False)
 
 
 def backups(folder: Path) -> tuple[Path, ...]:
-    """Earlier versions of project.json, the newest first; :func:`read_project` reads them."""
+    """List earlier versions of project.json, the newest first; :func:`read_project` reads them."""
     numbered = _numbered(folder / BACKUPS)
     return tuple(numbered[number] for number in sorted(numbered, reverse=True))
 
@@ -184,7 +184,7 @@ def remove_autosave(folder: Path) -> None:
 
 
 def recoverable(folder: Path) -> ProjectFile | None:
-    """The autosaved state, if it says something else than project.json and is not older; else None.
+    """Read the autosaved state, if it differs from project.json and is not older; else None.
 
     A state that cannot be read counts as none: there is nothing to recover from it. Where project.json itself cannot be
     read, the autosaved state is all there is.
@@ -199,7 +199,7 @@ def recoverable(folder: Path) -> ProjectFile | None:
 
 @dataclass(frozen=True, slots=True)
 class Version:
-    """An earlier state of a project that can be read; `autosaved` tells it from one of the last saved ones."""
+    """Earlier state of a project that can be read; `autosaved` tells it from one of the last saved ones."""
 
     path: Path
     file: ProjectFile
@@ -207,7 +207,7 @@ class Version:
 
 
 def rescues(folder: Path) -> tuple[Version, ...]:
-    """The states that are there beside project.json: the autosaved one, and the newest good one in backups.
+    """List the states beside project.json: the autosaved one, and the newest good one in backups.
 
     The newer one comes first; what cannot be read either is left out.
     """
@@ -220,49 +220,52 @@ def rescues(folder: Path) -> tuple[Version, ...]:
 
 
 def can_be_saved(folder: Path) -> bool:
-    """Whether the project in `folder` can be written to, as far as can be told without writing."""
+    """Whether the project in `folder` can be written to, as far as can be known without writing."""
     return os.access(folder, os.W_OK | os.X_OK)
 
 
 def stored_source(project_folder: Path, pictures: Path) -> str:
-    """How a project names a folder of pictures: relative inside the project's folder, in full elsewhere."""
+    """Make the path that project.json states for a folder of pictures.
+
+    Relative inside the project's folder, else full.
+    """
     full = resolved(pictures)
     own = resolved(project_folder)
     return full.relative_to(own).as_posix() if full.is_relative_to(own) else full.as_posix()
 
 
 def with_own_sources_relative(project_folder: Path, file: ProjectFile) -> ProjectFile:
-    """The project with the folders of pictures that lie within its own named relative to it."""
+    """Make the paths of folders of pictures within the project's own folder relative to it."""
     named = (stored for stored in asdict(file.project.sources).values() if stored and Path(stored).is_absolute())
     moved = {stored: stored_source(project_folder, Path(stored)) for stored in named}
     return relocated(file, {full: name for full, name in moved.items() if not Path(name).is_absolute()})
 
 
 def source_folder(project_folder: Path, stored: str) -> Path | None:
-    """The folder of pictures that a project names so; None where it names none."""
+    """Resolve the folder of pictures that a project states; None where it states none."""
     return project_folder / stored if stored else None
 
 
 def results_folder(project_folder: Path) -> Path:
-    """Where the results of the project lie."""
+    """Return the path of the folder of results of a project."""
     return project_folder / RESULTS
 
 
 def results_in(path: Path) -> Path:
-    """The folder of results of a project (its folder, or the project.json in it); any other path as it is."""
+    """Return the folder of results of a project (its folder, or the project.json in it); any other path as it is."""
     if is_project(path) and not path.is_dir():
         path = path.parent
     return results_folder(path) if is_project(path) or results_folder(path).is_dir() else path
 
 
 def sources_of_set(folder: Path) -> Sources:
-    """The folders of pictures in a recording set, in full; nothing for a part that is not there."""
+    """List the folders of pictures in a recording set, in full; "" for a part that is not there."""
     folders = {part: resolved(folder) / part for part in (*PARTS, CHECK)}
     return Sources(**{part: path.as_posix() if path.is_dir() else "" for part, path in folders.items()})
 
 
 def project_from_set(folder: Path, name: str) -> Project:
-    """A project that measures a recording set where it lies; the part is called like the set.
+    """Make a project that measures a recording set where it lies; the part is named after the set.
 
     Raises
     ------

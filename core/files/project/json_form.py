@@ -71,7 +71,7 @@ OptionsTable = create_model("OptionsTable", __base__=Table, **_all_checked(rows(
 
 
 class ProjectTables(Table):
-    """All of project.json."""
+    """Tables of project.json."""
 
     schema_version: int
     version: str = ""
@@ -128,11 +128,11 @@ _TODO = Message("advice.open_backup", "open a version in backups, or make a new 
 
 
 class NewerProject(InputError):
-    """The project was written by a newer program: nothing is wrong with it."""
+    """Error that a newer program has written the project: nothing is wrong with it."""
 
 
 def project_text(file: ProjectFile, path: Path) -> str:
-    """What project.json says of `file`.
+    """Write the text of project.json for `file`.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
 
 
 def project_tables(file: ProjectFile) -> dict[str, Any]:
-    """The tables of project.json, not yet checked."""
+    """Make the tables of project.json, not yet checked."""
     project = file.project
     return {
         "schema_version": SCHEMA,

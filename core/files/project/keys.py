@@ -29,7 +29,7 @@ Keys = Mapping[str, str]
 
 
 def inputs_of(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
-    """The key of everything the result of `step` would be made of now, by its name.
+    """Compute the key of every input that the result of `step` would have now, by its name.
 
     Which results these are, the graph of steps says; the rest are the step's own pictures and settings. `results` are
     the finished ones: what is inspected and reported is the scan that was measured, however the project has changed
@@ -53,7 +53,7 @@ def _made_of(step: str) -> tuple[str, ...]:
 
 
 def changed(before: Keys, now: Keys) -> tuple[str, ...]:
-    """Names of the inputs that are not what they were, in the order of `now`. One that is not there has no key."""
+    """List names of the inputs that differ, in the order of `now`. One that is not there has no key."""
     names = dict.fromkeys((*now, *before))
     return tuple(name for name in names if before.get(name, "") != now.get(name, ""))
 
@@ -65,7 +65,7 @@ def up_to_date(step: str, project: Project, results: Mapping[str, Done]) -> bool
 
 
 def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]:
-    """The steps that are to be done before the report is there and up to date, in the order of work.
+    """List the steps to do before the report is there and up to date, in the order of work.
 
     A calibration that was accepted without pictures of the project stands; a thickness that could not be measured on
     the scan is not tried again.
@@ -84,13 +84,13 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
 
 
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
-    """The record of `step` just finished with `project` as it is; `at` is now if not given."""
+    """Make the record of `step` just finished with `project` as it is; `at` is now if not given."""
     keys = inputs_of(step, project, results)
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
 def made_anew(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
-    """The `results`, where what `step` gave was made anew under the same name: all that rests on it is out of date."""
+    """Mark as out of date all `results` that rest on a result of `step` made anew under the same name."""
     anew, results = {_MADE[step]}, dict(results)
     for name in STEPS:
         done = results.get(name)
@@ -123,7 +123,7 @@ ACCEPTED: Mapping[str, str] = {
 
 
 def relocated(file: ProjectFile, moved: Mapping[str, str]) -> ProjectFile:
-    """A project whose pictures, nominal surfaces or template are elsewhere, by their names before.
+    """Replace paths of pictures, nominal surfaces and template in a project by those they were `moved` to.
 
     Results stay as up to date as they are: the keys of those that rest on a name change with it, and so do those of
     what rests on these.

@@ -41,7 +41,7 @@ Stamp = tuple[int, int, int, int]
 
 @dataclass(frozen=True, slots=True)
 class LockOwner:
-    """Who has a project open: user, computer, since when, by which process; `key` is another one each time."""
+    """User that has a project open: name, computer, since when, by which process; `key` is another one each time."""
 
     owner: str
     host: str
@@ -52,7 +52,7 @@ class LockOwner:
 
 
 class ProjectInUse(InputError):
-    """The project is open in another program."""
+    """Error that the project is open in another program."""
 
     def __init__(self, holder: LockOwner, folder: Path) -> None:
         self.holder = holder
@@ -73,14 +73,14 @@ class ProjectInUse(InputError):
 
 
 class ProjectLock:
-    """The lock of a project that only this program may change, until `release` or until another takes it over."""
+    """Lock of a project that only this program may change, until `release` or until another takes it over."""
 
     def __init__(self, folder: Path, holder: LockOwner, handle: int) -> None:
         self.folder, self.holder, self._handle = folder, holder, handle
         self._seen: Stamp | None = None
 
     def check(self) -> None:
-        """InputError if this program no longer has the lock: another has taken it over, or the folder is gone."""
+        """Raise InputError if this program no longer has the lock: another has taken it over, or the folder is gone."""
         stamp = _stamp(self.folder / LOCK)
         if stamp is not None and stamp == self._seen:
             return  # a window asks many times a second: the file that was read is not read again
@@ -102,7 +102,7 @@ class ProjectLock:
         self._seen = stamp
 
     def release(self) -> None:
-        """Let others change the project."""
+        """Release the lock."""
         holder = read_holder(self.folder)
         if holder is not None and holder.key == self.holder.key:
             with contextlib.suppress(OSError):
@@ -113,7 +113,7 @@ class ProjectLock:
 
 
 def user_name() -> str:
-    """The name the user is logged in by; "?" where there is none."""
+    """Return the name the user is logged in by; "?" where there is none."""
     try:
         return getpass.getuser()
     except (KeyError, OSError):  # a number without a name, as in some containers
@@ -121,7 +121,7 @@ def user_name() -> str:
 
 
 def read_holder(folder: Path) -> LockOwner | None:
-    """Whom the file says; None if there is none, or none that can be read."""
+    """Read the owner that a lock file names; None if there is none, or none that can be read."""
     try:
         return checked_json(LockOwner, read_json(folder / LOCK), folder / LOCK)
     except InputError:
@@ -142,7 +142,7 @@ def _stamp(path: Path) -> Stamp | None:
 
 
 def held_by(folder: Path) -> LockOwner | None:
-    """The owner of the lock; None if the project is not open, as far as can be told."""
+    """Read the owner of the lock; None if the project is not open, as far as can be known."""
     holder = read_holder(folder)
     if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK, holder)):
         return None

@@ -112,7 +112,7 @@ def _copied(folder: Path, project: Project) -> Iterator[Path]:
 
 
 def drawn_in_picture(project: Project) -> bool:
-    """Whether faces or sections are given in the picture: they hold for a part that lies where the last one lay."""
+    """Whether faces or sections are drawn in the picture, so that they hold only for a part in the same place."""
     gauge, features = project.rig.gauge, project.inspection.features
     polygons = gauge is not None and (gauge.upper_polygon_px is not None or gauge.lower_polygon_px is not None)
     regions = [region for feature in features for region in feature.regions]

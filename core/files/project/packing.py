@@ -77,7 +77,7 @@ class _Contents(Table):
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """A packed project: its file, how many files are in it, and what they have together in bytes."""
+    """Packed project: its file, how many files are in it, and their total size in bytes."""
 
     path: Path
     files: int
@@ -85,7 +85,7 @@ class Packed:
 
 
 def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
-    """Put the project in `folder` into the file `to`, whole or not at all.
+    """Pack the project in `folder` into the file `to`, whole or not at all.
 
     Folders of pictures, nominal surfaces and the report's template (with a logo beside it) that lie outside the project
     come along, and are within it in the pack; the results stay as up to date as they are. What belongs to a program at
@@ -143,7 +143,7 @@ def _pack(files: Mapping[str, Path], to: Path, progress: Progress) -> Packed:
 
 
 def unpack_project(path: Path, to: Path, progress: Progress = silent) -> Path:
-    """Make the folder `to` of a packed project, whole or not at all, and return it.
+    """Unpack a project into the folder `to`, whole or not at all, and return it.
 
     Raises
     ------

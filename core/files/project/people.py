@@ -45,7 +45,7 @@ _CHECKED = ConfigDict(extra="forbid", strict=True)
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """A person with a role; of the PIN there is a salt and what scrypt makes of both (RFC 7914), in hex."""
+    """Person with a role; of the PIN there is a salt and what scrypt makes of both (RFC 7914), in hex."""
 
     name: Annotated[str, Field(min_length=1, max_length=100, description="a name")]
     role: Annotated[Role, Field(description=" or ".join(f'"{one}"' for one in ROLES))]
@@ -56,7 +56,7 @@ class Person:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """The people of a project, and whether limits that change after a result want a reason.
+    """Rules of a project: its people, and whether changes of limits after a result need a reason.
 
     Without people everything is permitted.
     """
@@ -67,13 +67,13 @@ class Rules:
 
 
 def read_rules(folder: Path) -> Rules:
-    """The rules of a project; InputError if their file is damaged."""
+    """Read the rules of a project; InputError if their file is damaged."""
     path = folder / PEOPLE
     return checked_json(Rules, read_json(path), path) if path.exists() else Rules()
 
 
 def person(name: str, role: Role, pin: str) -> Person:
-    """A person with a PIN; InputError if that is too short."""
+    """Make a person with a PIN; InputError if that is too short."""
     if len(pin) < SHORTEST_PIN:
         raise InputError(
             Message("people.pin_short", "the PIN has fewer than {n} characters", n=SHORTEST_PIN), where=name
@@ -83,7 +83,7 @@ def person(name: str, role: Role, pin: str) -> Person:
 
 
 def with_pin(rules: Rules, name: str, pin: str) -> Person:
-    """The person of this name, who has shown it by the PIN; InputError if there is none, or the PIN is another."""
+    """Find the person of this name and check the PIN; InputError if there is none, or the PIN is another."""
     found = next((one for one in rules.people if one.name == name), None)
     if found is None or not hmac.compare_digest(_hash(pin, bytes.fromhex(found.salt)), found.hash):
         raise InputError(Message("people.wrong_pin", "name and PIN do not belong together"), where=name)
@@ -91,7 +91,7 @@ def with_pin(rules: Rules, name: str, pin: str) -> Person:
 
 
 def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
-    """Put rules in force, and the change into the audit trail, which comes first.
+    """Write rules, after the change of them is in the audit trail.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
 
 
 def reset_rules(folder: Path, why: str) -> None:
-    """Remove all people and rules, without a PIN: the way back if PINs are lost; the reason stays in the trail.
+    """Remove all people and rules, without a PIN, for lost PINs; the reason stays in the trail.
 
     Raises
     ------
@@ -146,7 +146,9 @@ def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
 
 
 def refused(rules: Rules, by: Person | None, before: Project, after: Project) -> InputError | None:
-    """Why a person may not change a project in this way; None if allowed. Who has not signed in is an operator."""
+    """Return the error why a person may not change a project in this way; None if allowed. Who has not signed in is
+    an operator.
+    """
     role: Role = "operator" if by is None else by.role
     needed = needed_role(before, after)
     if not rules.people or ROLES.index(role) >= ROLES.index(needed):
@@ -158,7 +160,10 @@ def refused(rules: Rules, by: Person | None, before: Project, after: Project) ->
 
 
 def needed_role(before: Project, after: Project) -> Role:
-    """Who may make this change: operators say what is measured of which pictures; limits are the administrator's."""
+    """Return the role needed for this change.
+
+    Operators set what is measured of which pictures, administrators limits.
+    """
     if limits_changed(before, after) or before.report.template != after.report.template:
         return "administrator"
     run = replace(before, info=after.info, sources=after.sources, repeats=after.repeats)
@@ -166,12 +171,12 @@ def needed_role(before: Project, after: Project) -> Role:
 
 
 def limits_changed(before: Project, after: Project) -> bool:
-    """Whether a nominal value, a limit or a tolerance is another one."""
+    """Whether a nominal value, a limit or a tolerance differs."""
     return _limits(before) != _limits(after)
 
 
 def reason_wanted(rules: Rules, results: Mapping[str, Done], before: Project, after: Project) -> bool:
-    """Whether a change wants a reason: limits are changed after something was judged by them."""
+    """Whether a change needs a reason: limits are changed after something was judged by them."""
     return rules.reasons and any(step in results for step in _JUDGED) and limits_changed(before, after)
 
 

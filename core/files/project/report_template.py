@@ -90,13 +90,16 @@ def read_report_template(path: Path) -> ReportTemplate:
 
 
 def logo_beside(path: Path) -> Path | None:
-    """The logo of the template in `path`; None if it has none, or one that lies elsewhere than beside or below it."""
+    """Find the logo of the template in `path`.
+
+    None if it has none, or one that lies elsewhere than beside or below it.
+    """
     logo = resolved(path.parent / checked(_Template, read_toml(path), path).logo)
     return logo if logo.is_file() and logo.is_relative_to(resolved(path.parent)) else None
 
 
 def section_set(names: list[str], *, where: str) -> frozenset[str]:
-    """Names of sections to be left out; InputError if there is no such section."""
+    """Check names of sections to be left out; InputError if there is no such section."""
     for name in names:
         if name not in SECTIONS:
             raise InputError(

@@ -18,7 +18,7 @@ from core.scan.surface.fused_surface import Mesh
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanSummary:
-    """What a scan measured, in short.
+    """Summary of what a scan measured.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class ScanSummary:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ProjectResults:
-    """The results that are there and belong together; None or nothing for those that do not.
+    """Results that are there and belong together; None or nothing for those that do not.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class ProjectResults:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ProfilesSummary:
-    """What came of it: the thickness, what each picture gave, what is to be told, and the report."""
+    """Result of measuring profiles: the thickness, the result of each picture, the notes, and the report."""
 
     gauge: GaugeResult
     pictures: tuple[PictureStep, ...]

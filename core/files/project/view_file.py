@@ -36,7 +36,7 @@ class _ViewFile(ResultFile):
 
 
 def view_text(view: SeenFrom, recording: str) -> str:
-    """A view of the surface measured from a recording, as its file has it."""
+    """Write a view of the surface measured from a recording as the text of its file."""
     return to_json(
         {
             "recording": recording,
@@ -50,7 +50,7 @@ def view_text(view: SeenFrom, recording: str) -> str:
 
 
 def write_view(folder: Path, view: SeenFrom, recording: str) -> None:
-    """Keep the view in the folder of a project; InputError if it cannot be written.
+    """Write the view into the folder of a project; InputError if it cannot be written.
 
     `recording` is that of the scan that is seen, as the project names it.
     """
@@ -58,19 +58,19 @@ def write_view(folder: Path, view: SeenFrom, recording: str) -> None:
 
 
 def drop_view(folder: Path) -> None:
-    """Keep none any more; InputError if the file cannot be removed."""
+    """Remove the stored view; InputError if the file cannot be removed."""
     remove(folder / NAME)
 
 
 def drop_view_of_another(folder: Path, recording: str) -> None:
-    """Keep none that is not of the scan of this recording: another part is seen; InputError as `drop_view`."""
+    """Remove the stored view unless it is of the scan of this recording; InputError as `drop_view`."""
     file = _read(folder)
     if file is None or file.recording != recording:
         drop_view(folder)
 
 
 def read_view(folder: Path) -> SeenFrom | None:
-    """The view kept there; None if there is none, or none that can be shown: a report is made without it."""
+    """Read the stored view; None if there is none, or none that can be shown: a report is made without it."""
     file = _read(folder)
     if file is None:
         return None

@@ -26,14 +26,14 @@ _DIRECT: int = getattr(os, "O_DIRECT", 0)
 
 
 class DirectWriter:
-    """Writes files one after another, each whole or not at all; for one thread."""
+    """Writer of files one after another, each whole or not at all; for one thread."""
 
     def __init__(self) -> None:
         self._can = bool(_DIRECT)
         self._buffer: NDArray[np.uint8] = np.zeros(0, np.uint8)
 
     def write(self, path: Path, *data: bytes | memoryview) -> None:
-        """Write `data`, in one piece or several, to `path`; InputError if that cannot be, then nothing is left."""
+        """Write `data`, in one piece or several, to `path`; InputError if that fails, and then nothing is left."""
         size = sum(memoryview(part).nbytes for part in data)
         if not self._can or size < WORTH_BYTES:
             write_bytes(path, *data, sync=False)

@@ -61,7 +61,7 @@ _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
 
 
 def write_views(path: Path, key: str, seen: SeenViews) -> None:
-    """Write what was seen, under the `key` of what it rests on; InputError if it cannot be written."""
+    """Write the views, under the `key` of what they rest on; InputError if they cannot be written."""
     arrays: dict[str, NDArray[Any]] = {
         "key": np.array(key),
         "where": np.array(seen.where),
@@ -75,7 +75,7 @@ def write_views(path: Path, key: str, seen: SeenViews) -> None:
 
 
 def read_views(path: Path, key: str) -> SeenViews | None:
-    """Read what was seen; None if it is not there, or rests on something else than `key`.
+    """Read the views; None if the file is not there, or rests on something else than `key`.
 
     Raises
     ------
@@ -184,7 +184,7 @@ _NOT_KNOWN = -1.0
 
 
 def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
-    """Arrays that hold views end to end, with how many points each has; a target that was not found has none."""
+    """Pack views end to end into arrays, with how many points each has; a target that was not found has none."""
     found = [view for view in views if view is not None]
     squares = [view.covariance.ravel() for view in found if view.covariance is not None]
     return {
@@ -198,7 +198,7 @@ def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
 
 
 def unpack_views(names: Sequence[str], arrays: Arrays) -> tuple[TargetView | None, ...]:
-    """The views that `pack_views` packed, under `names`; KeyError or ValueError if the arrays do not fit together."""
+    """Unpack the views of `pack_views`, under `names`; KeyError or ValueError if the arrays do not fit together."""
     found = arrays["view_lengths"]
     check_parts(found[found != _NO_VIEW], len(arrays["view_points"]))
     lengths = found.tolist()

@@ -29,7 +29,7 @@ IMPORTED = "import.json"
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What was written: the set, how many files in which way, and what deserves a word.
+    """Result of an import: the set, how many files in which way, and notes.
 
     `no_rig` is a word on a rig.toml that the set has not, which a window needs not; None if it has one.
     """
@@ -41,7 +41,7 @@ class Imported:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The notes, and that there is no rig.toml."""
+        """Notes, and one that there is no rig.toml if so."""
         return self.notes if self.no_rig is None else (*self.notes, self.no_rig)
 
 
@@ -103,7 +103,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
 
 
 def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
-    """InputError if the plan and a rig.toml cannot go into `target`; nothing is written."""
+    """Raise InputError if the plan and a rig.toml cannot go into `target`; nothing is written."""
     if target.exists() and not target.is_dir():
         raise InputError(Message("set.file_not_folder", "is a file, not a folder"), where=target)
     for part in plan.parts:
@@ -127,7 +127,7 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
 
 
 def earlier_imports(target: Path) -> list[Any]:
-    """What import.json says was imported into a set before; InputError if it is none of ours."""
+    """Read the earlier imports that import.json of a set lists; InputError if it is not ours."""
     path = target / IMPORTED
     if not path.exists():
         return []

@@ -36,7 +36,7 @@ _NAMES_SHOWN = 3
 
 
 class Order(StrEnum):
-    """What puts pictures in a row: their names, numbers counted as numbers, or when they were taken."""
+    """Order of pictures: by their names, numbers counted as numbers, or by when they were taken."""
 
     NAME = "name"
     TIME = "time"
@@ -44,14 +44,14 @@ class Order(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """The pictures in `folder` whose names fit `pattern`: ``*`` stands for any text, ``?`` for one character."""
+    """Pictures in `folder` whose names fit `pattern`: ``*`` stands for any text, ``?`` for one character."""
 
     folder: Path
     pattern: str = "*"
 
     @classmethod
     def typed(cls, text: str) -> Where:
-        """A folder, or a folder and a pattern of names: ``shots`` or ``shots/laser_*.jpg``."""
+        """Parse a folder, or a folder and a pattern of names: ``shots`` or ``shots/laser_*.jpg``."""
         path = Path(text)
         if set("*?") & set(path.name) and not path.is_dir():
             return cls(path.parent, path.name)
@@ -63,7 +63,7 @@ class Where:
 
 @dataclass(frozen=True, slots=True)
 class ImportRequest:
-    """Which pictures are to be what; None for what there is none of.
+    """Request for an import: which pictures are for which part; None for a part without pictures.
 
     `planes` are the poses of the plane target with the fan on, `planes_off` the same with it off; `scan` are frames,
     `reference` is the picture of the fan alone. `check` and `check_off` are as the poses, taken on the day of the scan.
@@ -81,7 +81,7 @@ class ImportRequest:
 
 @dataclass(frozen=True, slots=True)
 class ImportedPicture:
-    """One view, pose or frame: its `name` in the `part` of the set, where it lies, its off picture, when it was taken.
+    """View, pose or frame: its `name` in the `part` of the set, where it lies, its off picture, when it was taken.
 
     `taken_at` is None unless pictures are ordered by time.
     """
@@ -93,14 +93,14 @@ class ImportedPicture:
     taken_at: datetime | None = None
 
     def files(self) -> tuple[tuple[str, Path], ...]:
-        """(name within the set, where it lies) of each file: "planes/07_off.png"."""
+        """Pairs (name within the set, where it lies) of each file, as "planes/07_off.png"."""
         on = (f"{self.part}/{self.name}{self.source.suffix}", self.source)
         return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{OFF}{self.off.suffix}", self.off))
 
 
 @dataclass(frozen=True, slots=True)
 class ImportPlan:
-    """What was understood: every picture in its order, by which rule, for each part, and what deserves a word."""
+    """Plan of an import: every picture in its order, by which rule, for each part, and notes."""
 
     request: ImportRequest
     pictures: tuple[ImportedPicture, ...]
@@ -109,13 +109,13 @@ class ImportPlan:
 
     @property
     def parts(self) -> dict[str, tuple[ImportedPicture, ...]]:
-        """The pictures of each part that has any."""
+        """Pictures of each part that has any."""
         names = dict.fromkeys(one.part for one in self.pictures)
         return {part: tuple(one for one in self.pictures if one.part == part) for part in names}
 
 
 def plan_import(request: ImportRequest) -> ImportPlan:
-    """Understand which pictures are which; looks at the files' heads, and at three pairs.
+    """Plan which picture becomes what; reads the files' heads, and three pairs.
 
     Raises
     ------
@@ -260,7 +260,7 @@ _Key: TypeAlias = tuple[tuple[int, int, str], ...]
 
 
 def natural_key(text: str) -> _Key:
-    """What to sort names by so that "view2" comes before "view10", and "02" is the same number as "2"."""
+    """Make the key that sorts "view2" before "view10", with "02" the same number as "2"."""
     return tuple((0, int(part), "") if part.isdecimal() else (1, 0, part.lower()) for part in re.split(r"(\d+)", text))
 
 

@@ -37,7 +37,7 @@ _BACKGROUND_PX = 31
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LitPicture:
-    """A colour picture (height, width, 3 or 4) in OpenCV's order with the light, and what is known of it.
+    """Colour picture (height, width, 3 or 4) in OpenCV's order with the light, and what is known of it.
 
     `off` is the same without the light, None if there is none; `data` the bytes of its file, for what they tell of
     compression.
@@ -50,18 +50,18 @@ class LitPicture:
 
 @dataclass(frozen=True, slots=True)
 class LaserChannel:
-    """The channel to look at, None for grey, and how many times as well as grey it shows the laser; 1: it is stated."""
+    """Channel to look at, None for grey, and how many times as well as grey it shows the laser; 1: it is stated."""
 
     channel: Channel | None = None
     times: float = 1.0
 
     @property
     def settings(self) -> dict[str, str]:
-        """For run.json the channel that was looked at; nothing for grey."""
+        """Channel as run.json has it; nothing for grey."""
         return {} if self.channel is None else {"channel": self.channel}
 
     def notes(self, part: str) -> tuple[Message, ...]:
-        """Which channel was chosen for the pictures of a part of a set; nothing where it was stated."""
+        """Note which channel was chosen for the pictures of a part of a set; nothing where it was stated."""
         if self.channel is None or self.times <= 1:
             return ()
         return (
@@ -77,7 +77,7 @@ class LaserChannel:
 
 
 def laser_channel(pictures: Sequence[LitPicture], *, raw: bool = False) -> LaserChannel:
-    """The channel in which the light stands out farthest from all the rest, if clearly farther than in grey.
+    """Choose the channel in which the light stands out farthest from the rest, if clearly farther than in grey.
 
     Of `raw` pictures the plain one that does in any case: all others are made of pixels that nobody measured.
     """

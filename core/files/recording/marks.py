@@ -25,7 +25,9 @@ def mark_frame(folder: Path, name: str) -> None:
 
 
 def marked_frames(folder: Path) -> frozenset[str]:
-    """File names of the marked frames of a recording; none if none was marked. InputError if it cannot be read."""
+    """Read the file names of the marked frames of a recording; none if none was marked. InputError if it cannot be
+    read.
+    """
     path = folder / MARKS
     if not path.is_file():
         return frozenset()

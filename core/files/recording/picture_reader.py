@@ -28,7 +28,7 @@ _LOOKED_AT = 3
 
 
 class PictureReader:
-    """Reads the pictures of one set for one step, and knows afterwards which it has read.
+    """Reader of the pictures of one set for one step, with a record of which it has read.
 
     Parameters
     ----------
@@ -51,18 +51,18 @@ class PictureReader:
         self.channels: dict[str, LaserChannel] = dict(channels or {})
 
     def of(self, recording_set: RecordingSet) -> PictureReader:
-        """A reader for another choice of the same pictures; what either has read, both know."""
+        """Make a reader for another selection of the same pictures, with a common record of what is read."""
         other = PictureReader(recording_set)
         other.hashes, other.channels = self.hashes, self.channels
         return other
 
     def learn(self, hashes: Mapping[str, str], channels: Mapping[str, LaserChannel]) -> None:
-        """Take over what another reader has read of the same set, perhaps in another process."""
+        """Add the hashes and channels of what another reader has read of the same set, perhaps in another process."""
         self.hashes.update(hashes)
         self.channels.update(channels)
 
     def read(self, path: Path) -> Picture:
-        """Read one picture of the set as the rig wants it, and take its hash.
+        """Read one picture of the set as the rig states, and take its hash.
 
         Raises
         ------
@@ -90,12 +90,12 @@ class PictureReader:
         return data
 
     def read_further(self, path: Path, number: int) -> Picture | None:
-        """As `read` the further exposure of this number of a picture; None if there is none."""
+        """Read the further exposure of this number of a picture; None if there is none."""
         other = self.recording_set.further.get(path, {}).get(number)
         return None if other is None else self.read(other)
 
     def read_target(self, path: Path) -> Picture:
-        """Read one picture of the set in the channel in which a target is looked for, else as `read`.
+        """Read one picture of the set in the channel in which a target is searched, else as `read`.
 
         That is the laser's, unless targets cannot be seen in it; then it is the camera's. In a raw picture all sites
         show it.
@@ -115,14 +115,14 @@ class PictureReader:
         return to_grey(picture, channel)
 
     def sites(self, part: str) -> Sites:
-        """The sites that see the laser: all, unless pictures are raw and looked at in one colour."""
+        """Return the sites that see the laser: all, unless pictures are raw and one colour is used."""
         channel, mosaic = self.laser_channel(part).channel, self.recording_set.rig.mosaic
         if mosaic is None or channel is None or is_difference(channel):
             return ALL_SITES
         return sites_of(mosaic, channel)
 
     def laser_channel(self, part: str) -> LaserChannel:
-        """The channel in which the pictures of a part are looked at.
+        """Return the channel in which the pictures of a part are read, and choose it at first.
 
         Where none is stated, it is the one that shows the laser best; the camera's target is looked at in grey then.
         """
@@ -134,25 +134,25 @@ class PictureReader:
         return self.channels[part]
 
     def take_hashes(self, paths: Sequence[Path], progress: Progress = silent) -> None:
-        """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
+        """Take the hashes of pictures, as reading them does; one that cannot be read has none."""
         for path in steps(paths, progress, "comparing the pictures", len(paths)):
             with suppress(InputError):  # told where it is looked at
                 self.hashes[self.recording_set.name_of(path)] = file_hash(path)
 
     def named_hashes(self, paths: Iterable[Path]) -> list[tuple[str, str]]:
-        """Name and hash of pictures; "" for those of which none was taken."""
+        """List name and hash of pictures; "" for those of which none was taken."""
         names = map(self.recording_set.name_of, paths)
         return [(name, self.hashes.get(name, "")) for name in names]
 
     def id_of(self, paths: Iterable[Path]) -> str:
-        """Twelve hex digits that name some pictures by what is in them; those not read yet are hashed, too."""
+        """Compute twelve hex digits that identify pictures by their content; those not read yet are hashed, too."""
         named = {self.recording_set.name_of(path): path for path in paths}
         self.take_hashes([path for name, path in named.items() if name not in self.hashes])
         text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def stream(self, paths: Iterable[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Reason]]:
-        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
+        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, the reason.
 
         For one that is an earlier one again, `Exclusion.REPEATED`. `times` learns what decoding costs.
 

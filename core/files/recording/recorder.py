@@ -22,7 +22,7 @@ WAITING_BYTES = 512 * 2**20
 
 
 class Recorder:
-    """Writes pictures losslessly, on a thread of its own, in the order in which they are given.
+    """Writer of pictures, lossless, on a thread of its own, in the order in which they are given.
 
     A file is there whole or not at all, at whatever moment the program dies. When the disk does not take a picture, it
     and those behind it are kept and the next call raises InputError; the call after that finds them being tried again,
@@ -67,24 +67,24 @@ class Recorder:
 
     @property
     def written(self) -> int:
-        """How many pictures are on the disk."""
+        """Number of pictures on the disk."""
         with self._changed:
             return self._written
 
     @property
     def dropped(self) -> int:
-        """How many were not taken because the disk is too slow, or given up by `close` because it is full."""
+        """Number of pictures lost because the disk is too slow, or given up by `close` because it is full."""
         with self._changed:
             return self._dropped
 
     @property
     def waiting(self) -> int:
-        """How many are taken but not yet on the disk."""
+        """Number of pictures accepted but not yet on the disk."""
         with self._changed:
             return len(self._queue)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
-        """Take a picture, which must not be changed any more, to be written as `name` (the ending is added if missing).
+        """Queue a picture to be written as `name`, its ending added if missing; it must not be changed any more.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Recorder:
                 self._tell()
 
     def close(self) -> None:
-        """Write what is waiting and end; what cannot be written even now is given up and counted as dropped.
+        """Write what is waiting and end; pictures that cannot be written even now are counted as dropped.
 
         Raises
         ------

@@ -31,7 +31,7 @@ _COLUMNS = ("name", "index", "time_s", "dropped", "taken_at", "camera")
 
 @dataclass(frozen=True, slots=True)
 class LoggedFrame:
-    """One frame of a recording.
+    """Line of the log: one frame of a recording.
 
     `name` of its file; `index` and `time_s` as in :class:`core.acquire.source.Frame`; `dropped` counts the frames lost
     so far, by the source or because the disk was too slow. `taken_at` is when it was taken, with a time zone, and
@@ -47,19 +47,19 @@ class LoggedFrame:
 
 
 def logged(name: str, frame: Frame, dropped: int, camera: str) -> LoggedFrame:
-    """The line of a frame that a `camera` has just taken; "": it is one of a replay, of which that is not known."""
+    """Make the line of a frame that a `camera` has just taken; "": a replay, whose camera is not known."""
     return LoggedFrame(name, frame.index, frame.time_s, dropped, datetime.now(UTC) if camera else None, camera)
 
 
 class RecordingLog:
-    """Writes the log of the recording in `folder`, from its first frame on."""
+    """Writer of the log of the recording in `folder`, from its first frame on."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / LOG
         self._file: int | None = None
 
     def add(self, frame: LoggedFrame) -> None:
-        """A frame's file is whole; InputError if that cannot be written down, nothing half written stays then."""
+        """Append a frame whose file is complete; InputError if that fails, and then nothing half written stays."""
         begin = 0
         try:
             if self._file is None:
@@ -78,14 +78,14 @@ class RecordingLog:
             raise cannot_write(self._path, error) from error
 
     def close(self) -> None:
-        """No more frames."""
+        """Close the log."""
         if self._file is not None:
             os.close(self._file)
             self._file = None
 
 
 def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
-    """The frames of the recording in `folder`, in order; () if it has no log.
+    """Read the frames of the recording in `folder`, in order; () if it has no log.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _frame(name: str, index: str, time_s: str, dropped: str, taken_at: str = "",
 
 @dataclass(frozen=True, slots=True)
 class FolderLog:
-    """What the log of a folder says of its pictures; nothing needs it, so that a damaged one is told and not used.
+    """Log of a folder of pictures as far as it can be read; a damaged one is noted and ignored.
 
     `frames` are its lines, () where there is no log or it is damaged; `notes` say that it is.
     """
@@ -127,7 +127,7 @@ class FolderLog:
 
     @classmethod
     def of(cls, folder: Path | None) -> FolderLog:
-        """Read the log in a folder; one that says nothing where there is none."""
+        """Read the log in a folder; an empty one where there is none."""
         try:
             return cls() if folder is None else cls(read_log(folder))
         except InputError as error:
@@ -135,11 +135,11 @@ class FolderLog:
 
     @property
     def lost(self) -> int:
-        """How many frames were lost while it was written."""
+        """Number of frames lost while the log was written."""
         return lost_frames(self.frames)
 
     def taken(self, pictures: Sequence[Path]) -> Taken | None:
-        """By which camera and when these pictures were taken; None where it does not say so of each."""
+        """Find the camera and the times of these pictures; None where it is not known of each."""
         known = {frame.name: frame for frame in self.frames}
         frames = [known.get(path.name) for path in pictures]
         cameras = {"" if frame is None else frame.camera for frame in frames}
@@ -150,5 +150,5 @@ class FolderLog:
 
 
 def lost_frames(frames: Sequence[LoggedFrame]) -> int:
-    """How many frames were lost between the first and the last of a recording; a source opened anew counts anew."""
+    """Count the frames lost between the first and the last of a recording; a source opened anew counts anew."""
     return sum(max(0, later.dropped - earlier.dropped) for earlier, later in pairwise(frames))

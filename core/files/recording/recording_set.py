@@ -53,7 +53,7 @@ _BRACKETED = ("planes", "scan", CHECK)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecordingSet:
-    """The files of one recording set, in the order of their names; a `PictureReader` reads them.
+    """Files of one recording set, in the order of their names; a `PictureReader` reads them.
 
     Parameters
     ----------
@@ -79,14 +79,14 @@ class RecordingSet:
     rig_hash: str = ""
 
     def name_of(self, path: Path) -> str:
-        """The name of a picture within the set, as "camera/view00.png", wherever it lies."""
+        """Return the name of a picture within the set, as "camera/view00.png", wherever it lies."""
         for part, folder in self.folders.items():
             if path.parent == folder:
                 return f"{part}/{path.name}"
         raise ValueError(f"{path} is no picture of {self.name}")
 
     def path_of(self, name: str) -> Path:
-        """Where the picture of this name lies.
+        """Return the path of the picture of this name.
 
         Raises
         ------
@@ -99,37 +99,37 @@ class RecordingSet:
         return self.folders[part] / file
 
     def with_further(self, paths: Iterable[Path]) -> list[Path]:
-        """Each of some pictures and, behind it, its further exposures."""
+        """List some pictures, each followed by its further exposures."""
         return [one for path in paths for one in (path, *self.further.get(path, {}).values())]
 
     def pictures_of(self, pairs: Iterable[PlanePair]) -> list[Path]:
-        """All pictures of some poses: the fan on and off, and their further exposures."""
+        """List all pictures of some poses: the fan on and off, and their further exposures."""
         return self.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
     def where(self, part: str) -> Path | str:
-        """The folder of a part, or its name if it has none: what a complaint about it begins with."""
+        """Return the folder of a part, or its name if it has none: the beginning of a complaint about it."""
         return self.folders.get(part, part)
 
     def not_read(self, part: str) -> tuple[Message, ...]:
-        """A note on pictures and films in the folder of a part that are of a kind that is not read."""
+        """Note pictures and films in the folder of a part that are of a kind that is not read."""
         return notes_on_not_read(self.folders.get(part))
 
     def log(self, part: str) -> FolderLog:
-        """Read what the log of a part's recording says: nothing where there is none."""
+        """Read the log of a part's recording; an empty one where there is none."""
         return FolderLog.of(self.folders.get(part))
 
     @property
     def rig_file(self) -> Path:
-        """Where rig.toml lies, or would."""
+        """Path of rig.toml, whether it is there or not."""
         return next((folder.parent for folder in self.folders.values()), Path(self.name)) / RIG
 
     def contains(self, folder: Path) -> bool:
-        """Whether `folder` holds a part of the set, so that nothing else should be written there."""
+        """Whether a part of the set is in `folder`, so that nothing else should be written there."""
         own = {resolved(path) for place in self.folders.values() for path in (place, place.parent)}
         return resolved(folder) in own
 
     def seen_in(self, channel: Channel | None) -> RecordingSet:
-        """The set with this channel for the laser, in all parts; as it is for None."""
+        """Set this channel for the laser in all parts; None changes nothing."""
         if channel is None:
             return self
         rig = self.rig
@@ -138,12 +138,12 @@ class RecordingSet:
         return replace(self, rig=rig)
 
     def part_of(self, path: Path) -> str:
-        """The part that a picture belongs to, as "camera"."""
+        """Return the part that a picture belongs to, as "camera"."""
         return self.name_of(path).partition("/")[0]
 
 
 def require_folder(folder: Path) -> None:
-    """InputError unless the folder of a recording set is there."""
+    """Raise InputError unless the folder of a recording set is there."""
     if folder.is_dir():
         return
     what = (
@@ -188,7 +188,7 @@ def gather_set(
     name: str = "",
     check: Path | None = None,
 ) -> RecordingSet:
-    """One set from folders of pictures that may lie anywhere; one that is not there leaves its part empty.
+    """Make one set from folders of pictures anywhere; one that is not there leaves its part empty.
 
     Names and hashes are those of a set in one folder. The rig's hash is that of the rig.toml beside one of the folders
     if it says the same, else of the rig.toml that could be written. Without a `name`, the set is called like the folder
@@ -230,7 +230,7 @@ def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Mes
 
 
 def require_camera(recording_set: RecordingSet) -> None:
-    """InputError unless the set has views of the camera target, and says what that is."""
+    """Raise InputError unless the set has views of the camera target, and explain what that is."""
     require_tables(recording_set.rig, recording_set.rig_file, "camera_target")
     if not recording_set.camera:
         raise _nothing_in(
@@ -242,7 +242,7 @@ def require_camera(recording_set: RecordingSet) -> None:
 
 
 def require_planes(recording_set: RecordingSet) -> None:
-    """InputError unless the set has pictures of the plane target with the fan on, and says what both are."""
+    """Raise InputError unless the set has pictures of the plane target with the fan on, and explain both."""
     require_tables(recording_set.rig, recording_set.rig_file, "plane_target", "laser_fan")
     if not recording_set.planes:
         raise _nothing_in(
@@ -254,7 +254,7 @@ def require_planes(recording_set: RecordingSet) -> None:
 
 
 def require_scan(recording_set: RecordingSet) -> None:
-    """InputError unless the set has frames of a scan."""
+    """Raise InputError unless the set has frames of a scan."""
     if not recording_set.frames:
         raise _nothing_in(
             recording_set,
@@ -265,7 +265,7 @@ def require_scan(recording_set: RecordingSet) -> None:
 
 
 def require_outside(recording_set: RecordingSet, out: Path) -> None:
-    """InputError if the results were to go into the set itself."""
+    """Raise InputError if the results were to go into the set itself."""
     if recording_set.contains(out):
         raise InputError(
             Message("project.results_within_set", "the results cannot go into the recording set itself"),
@@ -303,14 +303,14 @@ def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
 
 
 def excludable(recording_set: RecordingSet) -> tuple[str, ...]:
-    """All that can be left out of a set: views and frames as files, poses (on and off together) by their name."""
+    """List all that can be left out of a set: views and frames as files, poses (on and off together) by their name."""
     views = (recording_set.name_of(path) for path in recording_set.camera)
     frames = (recording_set.name_of(path) for path in recording_set.frames)
     return (*views, *(f"planes/{pair.name}" for pair in recording_set.planes), *frames)
 
 
 def excluded_names(recording_set: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
-    """The names in `typed` as the options want them: a pose may also be named by one of its pictures.
+    """Convert the names in `typed` to those of the options: a pose may also be named by one of its pictures.
 
     Raises
     ------

@@ -13,7 +13,7 @@ _PARTS: tuple[Step, ...] = ("camera", "planes", "scan", "check")
 
 @dataclass(frozen=True, slots=True)
 class ReplayPictures:
-    """The pictures in a folder by step and lasers, named as in a recording set.
+    """Pictures in a folder by step and lasers, named as in a recording set.
 
     `folder` is that of a recording set, or one that holds the pictures of one step.
     """

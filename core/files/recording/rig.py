@@ -66,7 +66,7 @@ def _stated(table: str, key: str, default: Any = None) -> Any:
 
 
 class Table(BaseModel):
-    """A table of a file a person writes: unknown keys are misspelt ones."""
+    """Table of a file that a person writes: unknown keys are errors."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -124,7 +124,7 @@ CERTIFIED = ("certificate", "laboratory", "due")
 
 
 def require_pairs(table: BaseModel, pairs: Sequence[tuple[str, str]]) -> None:
-    """Clash where one of a pair is there without the other."""
+    """Raise Clash where one of a pair of keys is there without the other."""
     for pair in pairs:
         missing = [name for name in pair if getattr(table, name) is None]
         if len(missing) == 1:
@@ -219,7 +219,7 @@ class _LaserFan(Table):
 
 
 class GaugeTable(Table):
-    """[gauge]."""
+    """Table [gauge]."""
 
     nominal_mm: float | None = _stated("gauge", "nominal_mm")
     tolerance_mm: float | None = _stated("gauge", "tolerance_mm")
@@ -251,7 +251,7 @@ _A_COUNT = label("a whole number above 0")
 
 
 class PlanTable(Table):
-    """[plan]: what `trisect plan` wants to know of a rig that is not built yet; other commands pass it by."""
+    """Table [plan] of a rig that is not built yet, for `trisect plan`; other commands ignore it."""
 
     pixels: list[_Count1] | None = Field(
         None, min_length=2, max_length=2, description="two whole numbers, [width, height] of the pictures"
@@ -429,7 +429,7 @@ _PART_FIELDS = {"alpha_per_K": "alpha", "u_alpha_per_K": "u_alpha"}
 
 
 def part_table(part: Part) -> dict[str, Any]:
-    """A part as [part] has it, without what is not stated, and under "target" what is stated of that."""
+    """Make the table [part] of a part, without what is not stated, and under "target" what is stated of that."""
     target = temperature_table(part.target)
     return _of_part_alone(part) | ({"target": target} if target else {})
 
@@ -439,12 +439,12 @@ def _of_part_alone(part: Part) -> dict[str, Any]:
 
 
 def temperature_table(target: TargetTemperature) -> dict[str, Any]:
-    """How warm a target was as its table has it, without what is not stated."""
+    """Make the table of a target's temperature, without what is not stated."""
     return _renamed(asdict(target))
 
 
 def as_calibrated_with(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A target's table without what no calibration rests on: how warm it was, and its certificate."""
+    """Drop from a target's table what no calibration rests on: its temperature and its certificate."""
     left_out = {*(key for pair in WARMTH for key in pair), *CERTIFIED}
     return {key: value for key, value in table.items() if key not in left_out}
 
@@ -455,14 +455,14 @@ def _renamed(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def part_of(table: Mapping[str, Any], path: Path) -> Part:
-    """The part that a table of `part_table` describes; InputError if it is none."""
+    """Make the part that a table of `part_table` describes; InputError if it is none."""
     alone = {name: value for name, value in table.items() if name != "target"}
     target = checked(_Printed, dict(table.get("target", {})), path).temperature()
     return replace(checked(_Part, alone, path).part(), target=target)
 
 
 class RigTables(Table):
-    """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
+    """Tables of rig.toml, and of project.json under "rig"; a step that needs a missing table raises an error."""
 
     camera_target: _CameraTarget | None = Field(None, description="a table [camera_target] with kind and sizes")
     plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
@@ -500,7 +500,7 @@ STEP_TABLES = ("camera_target", "plane_target", "laser_fan")
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GaugeSpec:
-    """What is to be measured: nominal value and tolerance in mm, faces as (N, 2) polygons in pixels."""
+    """Specification of the gauge: nominal value and tolerance in mm, faces as (N, 2) polygons in pixels."""
 
     nominal_mm: float | None = None
     tolerance_mm: float | None = None
@@ -529,7 +529,7 @@ class GaugeSpec:
 
 @dataclass(frozen=True, slots=True)
 class Channels:
-    """The channel of colour pictures that each step looks at; None where it is the one of all."""
+    """Channel of colour pictures for each step; None where it is the common one."""
 
     camera: PlainChannel | None = None
     planes: Channel | None = None
@@ -538,7 +538,7 @@ class Channels:
 
 @dataclass(frozen=True, slots=True)
 class Validity:
-    """For how many days a calibration holds, and for how many a check of it; None: without limit.
+    """Days for which a calibration is valid, and a check of it; None: without limit.
 
     `fresh_hours` is within how many hours planes and scan are of one sitting; None: FRESH_HOURS of
     `core.calibrate.sitting`.
@@ -551,7 +551,7 @@ class Validity:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceTarget:
-    """A target whose size is known, and how true it is."""
+    """Target of known size, with the uncertainty of it."""
 
     target: Target
     board: BoardTolerance
@@ -559,7 +559,7 @@ class ReferenceTarget:
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
+    """Content of rig.toml. `angle` between neighbouring lines is in rad (0 with one line).
 
     `camera_board` and `plane_board` say how true the two targets are, `plane_margin_mm` how far the plate of the second
     goes on beyond what is printed on it, None if that is not known. `channels` are those of steps that look at another
@@ -607,7 +607,7 @@ class Rig:
         return stated and self.camera_target == self.plane_target
 
     def channel_of(self, part: str) -> Channel | None:
-        """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any.
+        """Return the channel in which a part of a set ("camera", "planes", "scan", "check") is read, if any.
 
         The camera's target cannot be seen in a difference of channels that is stated for all parts.
         """
@@ -617,23 +617,23 @@ class Rig:
 
     @property
     def live_channel(self) -> Channel | None:
-        """The channel that colour pictures of live sources are reduced to: targets have to be seen in it."""
+        """Channel that colour pictures of live sources are reduced to: targets have to be visible in it."""
         scan = self.channel_of("scan")
         return self.channel_of("camera") if is_difference(scan) else scan
 
     def with_channel(self, part: str, channel: Channel | None) -> Rig:
-        """The rig with the pictures of one part looked at in this channel, None: as it is chosen for them."""
+        """Set the channel of the pictures of one part; None: it is chosen from them."""
         now = {name: self.channel_of(name) for name in ("camera", "planes", "scan")}
         return replace(self, channel=None, channels=Channels(**(now | {part: channel})))  # type: ignore[arg-type]
 
 
 def default_rig() -> Rig:
-    """The rig of the paper: its checkerboard, its black square, three laser lines 5° apart; nothing to be measured."""
+    """Make the rig of the paper: its checkerboard, its black square, three laser lines 5° apart; nothing to measure."""
     return Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), lines=3, angle=math.radians(5.0))
 
 
 def require_tables(rig: Rig, path: Path, *names: str) -> None:
-    """InputError if one of the tables of these `names` is not in the rig.toml at `path`."""
+    """Raise InputError if one of the tables of these `names` is not in the rig.toml at `path`."""
     for name in names:
         if name in rig.unstated:
             wanted = RigTables.model_fields[name].description
@@ -656,7 +656,7 @@ def read_rig(path: Path) -> Rig:
 
 
 def read_rig_tables(path: Path) -> RigTables:
-    """Read and check rig.toml as `read_rig` does; its tables as they are, those not there None."""
+    """Read and check rig.toml as `read_rig` does; return its tables, those not there as None."""
     return checked(RigTables, _toml(path), path)
 
 
@@ -665,7 +665,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
-    """The rig that checked `tables` describe; `path`, and the field `within` it, are for complaints."""
+    """Make the rig that checked `tables` describe; `path`, and the field `within` it, are for complaints."""
     rig = default_rig()
     stated: dict[str, Any] = {}
     if tables.camera_target is not None:
@@ -722,13 +722,13 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
 
 
 def stated_part(tables: RigTables) -> Part:
-    """What is stated of the part, and of how warm the plane target was."""
+    """Make the part, and the temperature of the plane target, as stated in `tables`."""
     part = Part() if tables.part is None else tables.part.part()
     return part if tables.plane_target is None else replace(part, target=tables.plane_target.temperature())
 
 
 def rig_tables(rig: Rig) -> dict[str, Any]:
-    """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
+    """Make the tables of rig.toml for a rig, without those that are not there; `RigTables` checks them."""
     tables = {
         "name": rig.name or None,
         "channel": rig.channel,
@@ -758,7 +758,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
 
 
 def rig_to_toml(rig: Rig) -> str:
-    """The text of a rig.toml that :func:`read_rig` reads as the same rig."""
+    """Write a rig as text of rig.toml that :func:`read_rig` reads as the same rig."""
     return toml_text(rig_tables(rig))
 
 

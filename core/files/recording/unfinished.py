@@ -19,7 +19,7 @@ NOTE = Path("recordings") / ".unfinished.json"
 
 @dataclass(frozen=True, slots=True)
 class Unfinished:
-    """What was being recorded, where its pictures are, and how many there are."""
+    """Unfinished recording: its step, the folder of its pictures, and how many there are."""
 
     step: Step
     folder: Path
@@ -33,12 +33,12 @@ def note_recording(project: Path, step: Step, folder: Path) -> None:
 
 
 def forget_recording(project: Path) -> None:
-    """The recording is part of the project, or is not wanted; InputError if the note cannot be removed."""
+    """Remove the note of a recording that is added or not wanted; InputError if it cannot be removed."""
     remove(project / NOTE)
 
 
 def unfinished_recording(project: Path) -> Unfinished | None:
-    """What was being recorded when the program died; None if nothing was, or no picture of it is there."""
+    """Find a recording that was interrupted when the program died; None if there is none, or no picture of it."""
     try:
         noted = read_json(project / NOTE)
         step, name = noted["step"], noted["folder"]

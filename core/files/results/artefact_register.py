@@ -48,7 +48,7 @@ _MISSING = Message("artefact.no_register", "there is no register of artefacts")
 
 
 class ArtefactTable(Table):
-    """An artefact in a register."""
+    """Table of an artefact in a register."""
 
     id: str = Field(min_length=1, max_length=60, description="a text of at most 60 letters")
     value_mm: _Length
@@ -60,7 +60,7 @@ class ArtefactTable(Table):
     laboratory: ShortText = ""
 
     def artefact(self) -> Artefact:
-        """What it says."""
+        """Make the artefact of this table."""
         return Artefact(**dict(self))
 
 
@@ -69,7 +69,7 @@ class _Register(Table):
 
 
 def read_register(beside: Path) -> Mapping[str, Artefact]:
-    """The artefacts that are known by their ids: the user's own, and those in the folder `beside` rig.toml.
+    """Read the known artefacts by their ids: the user's own, and those in the folder `beside` rig.toml.
 
     Raises
     ------
@@ -80,23 +80,25 @@ def read_register(beside: Path) -> Mapping[str, Artefact]:
 
 
 def own_register() -> Mapping[str, Artefact]:
-    """The user's own artefacts by their ids; InputError as `read_register`."""
+    """Read the user's own artefacts by their ids; InputError as `read_register`."""
     return register_in(own_folder())
 
 
 def register_in(folder: Path) -> Mapping[str, Artefact]:
-    """The artefacts of the register in one folder, by their ids; none without one. InputError as `read_register`."""
+    """Read the artefacts of the register in one folder, by their ids; none without one. InputError as
+    `read_register`.
+    """
     path = folder / REGISTER
     return _artefacts(read_toml(path, missing=_MISSING), path) if path.exists() else {}
 
 
 def register_text(artefacts: Iterable[Artefact]) -> str:
-    """A register of these."""
+    """Write the text of a register of these artefacts."""
     return "\n".join(map(_text, artefacts))
 
 
 def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
-    """Add an artefact to the user's own, after what stands there; returns them all.
+    """Add an artefact to the user's own, behind the others; returns them all.
 
     Raises
     ------
@@ -111,7 +113,7 @@ def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
 
 
 def change_own(id_: str, to: Artefact | None) -> Mapping[str, Artefact]:
-    """Put an artefact in the place of the user's own of this id, or remove that for None; returns them all.
+    """Replace the user's own artefact of this id, or remove it for None; returns them all.
 
     Raises
     ------
@@ -178,7 +180,7 @@ def _text(artefact: Artefact) -> str:
 
 
 def artefact_named(id_: str, beside: Path) -> Artefact:
-    """The artefact of this id; InputError if the registers do not have it, or as `read_register`."""
+    """Find the artefact of this id; InputError if the registers do not have it, or as `read_register`."""
     known = read_register(beside)
     if id_ not in known:
         raise InputError(

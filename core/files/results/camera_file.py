@@ -63,7 +63,7 @@ class _View(CountedPose):
 
 
 class BoardTable(ResultFile):
-    """The shape of the target."""
+    """Table of the shape of the target."""
 
     shape: list[Finite] = Field(min_length=4, max_length=4, description="four finite numbers")
     covariance: list[Annotated[list[Finite], Field(min_length=4, max_length=4)]] = Field(
@@ -114,7 +114,7 @@ class _CameraFile(ResultFile):
 
 
 def camera_id(camera: Camera) -> str:
-    """Twelve hex digits that name these very parameters; files made with them carry it."""
+    """Compute twelve hex digits that identify these parameters; files made with them carry it."""
     numbers = np.concatenate([camera.image_size, camera.matrix.ravel(), camera.distortion])
     return hashlib.sha256(numbers.astype("<f8").tobytes()).hexdigest()[:12]
 
@@ -196,7 +196,7 @@ def _calibration(file: _CameraFile) -> CameraCalibration:
 
 
 def board_table(shape: BoardShape) -> dict[str, Any]:
-    """A target's shape as files have it."""
+    """Make the table of a target's shape."""
     return {
         "parameters": SHAPE_PARAMETERS,
         "shape": shape.values,
@@ -209,7 +209,7 @@ def board_table(shape: BoardShape) -> dict[str, Any]:
 
 
 def board_shape(table: BoardTable | None) -> BoardShape:
-    """The shape in a file; flat if there is none."""
+    """Make the shape that a file states; flat if there is none."""
     if table is None:
         return BoardShape()
     board = Board(np.array(table.middle_mm), np.array(table.half_mm))

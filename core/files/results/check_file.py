@@ -24,7 +24,7 @@ _TODO = Message("advice.check_first", "check first{command}", command=Command("t
 
 @dataclass(frozen=True, slots=True)
 class CheckedLine:
-    """A stripe of the fan's `line` (from 1): how far it is from its light plane, with the standard uncertainty of it.
+    """Stripe of the fan's `line` (from 1): its distance from its light plane, with standard uncertainty.
 
     `offset_px` is the same in the picture.
     """
@@ -38,7 +38,7 @@ class CheckedLine:
 
 @dataclass(frozen=True, slots=True)
 class CheckedPicture:
-    """One pose of the target in a check: its stripes, or the `reason` why nothing can be said."""
+    """Pose of the target in a check: its stripes, or the `reason` why it is not used."""
 
     name: str
     reason: OptionalMessage = None
@@ -47,7 +47,7 @@ class CheckedPicture:
 
     @property
     def used(self) -> bool:
-        """Whether it says something."""
+        """Whether the picture is used."""
         return self.reason is None
 
 
@@ -97,12 +97,12 @@ class InterimCheck:
 
     @property
     def verdict(self) -> CheckVerdict:
-        """Doubtful is what chance does to one rig in a hundred that has not changed."""
+        """Verdict of the check; doubtful is what chance does to one rig in a hundred that has not changed."""
         return "passed" if self.p >= P_TOLD else "doubtful" if self.p >= PROVES_NOTHING else "failed"
 
     @property
     def used(self) -> int:
-        """How many poses say something."""
+        """Number of poses used."""
         return sum(pose.used for pose in self.poses)
 
     @property
@@ -112,12 +112,15 @@ class InterimCheck:
 
     @property
     def offset_mm(self) -> float:
-        """The same in mm on the target."""
+        """RMS distance in mm on the target of the stripes from where the calibrations have them.
+
+        NaN without stripes.
+        """
         return _rms([line.offset_mm for pose in self.poses for line in pose.lines])
 
     @property
     def sentence(self) -> Message:
-        """What came of it, and what to do."""
+        """Sentence with the result of the check, and what to do."""
         values = {"offset_px": self.offset_px, "offset_mm": self.offset_mm, "p": self.p}
         if not self.used:
             return Message(

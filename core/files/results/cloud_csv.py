@@ -31,7 +31,7 @@ _ROWS_AT_ONCE = 20_000
 
 
 def point_columns(kind: FrameKind) -> dict[str, str]:
-    """Columns of a cloud, their frame and unit in their names, and how their values are written: lengths to 1 nm."""
+    """Make the columns of a cloud, with frame and unit in their names, and the formats of their values."""
     return {**dict.fromkeys(PLACES[kind], "%.6f"), **_COLUMNS}
 
 

@@ -47,7 +47,7 @@ _COLUMNS = {
 
 @dataclass(frozen=True, slots=True)
 class ChangedPart:
-    """A part of what was compared: its share of all core points, mean and most extreme deviation in mm."""
+    """Changed part of the surface: its share of all core points, mean and most extreme deviation in mm."""
 
     share: Probability
     mean_mm: OrNan
@@ -56,13 +56,13 @@ class ChangedPart:
 
     @classmethod
     def of(cls, changed: Changed) -> ChangedPart:
-        """As it is written."""
+        """Make the entry of a changed part."""
         return cls(changed.share, changed.mean_mm, changed.extreme_mm)
 
 
 @dataclass(frozen=True, slots=True)
 class ComparisonFile:
-    """What comparison.json says.
+    """Content of comparison.json.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class ComparisonFile:
 
     @classmethod
     def of(cls, comparison: Comparison, other: str, alignment: Alignment, calibration_id: str) -> ComparisonFile:
-        """What a comparison comes to."""
+        """Make the content of comparison.json from a comparison."""
         return cls(
             other,
             alignment,
@@ -111,7 +111,7 @@ class ComparisonFile:
         )
 
     def values(self) -> dict[str, Any]:
-        """As it is written, and printed for machines."""
+        """Values as they are written, and printed for machines."""
         numbers = {name: getattr(self, name) for name in self.__slots__ if name not in ("lower", "higher")}
         parts = {
             name: {key: getattr(part, key) for key in ("share", "mean_mm", "extreme_mm")}
@@ -153,7 +153,7 @@ def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None
 
 
 def write_comparison_csv(path: Path, comparison: Comparison) -> None:
-    """Write the same as a table, a line to each core point; InputError if it cannot be written."""
+    """Write the core points as a table, a line for each; InputError if it cannot be written."""
     _write_table(path, _columns(comparison), CAMERA_FRAME)
 
 

@@ -20,7 +20,7 @@ Needs = Literal["camera", "scan", "gauge"]
 
 @dataclass(frozen=True, slots=True)
 class ExportKind:
-    """One thing that can be handed over.
+    """Kind of file that can be exported.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class ExportKind:
 
     @property
     def ending(self) -> str:
-        """How the file's name ends, with its point."""
+        """Ending of the file's name, with its point."""
         return PurePath(self.file).suffix
 
 

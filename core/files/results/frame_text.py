@@ -31,12 +31,12 @@ _LARGEST_SHEAR = 1e-6
 
 
 def frame_words(kind: FrameKind) -> str:
-    """What a head says of the frame."""
+    """Name the frame for the head of a file."""
     return f"{_FRAME}{IN_WORDS[kind]}"
 
 
 def frame_comments(frame: ViewFrame) -> list[str]:
-    """What the head of a PLY file says of its frame: the words, and where it is not the camera's the motion into it."""
+    """Make the comments on the frame in the head of a PLY file: its name, and the motion into the camera's frame."""
     words = frame_words(frame.kind)
     if frame.kind is FrameKind.CAMERA:
         return [words]
@@ -46,7 +46,7 @@ def frame_comments(frame: ViewFrame) -> list[str]:
 
 
 def told_pose(comments: Sequence[str], path: Path) -> Pose:
-    """The motion into the camera frame that a file's head states; where no frame is named it is the camera's own.
+    """Read from a file's head the motion into the camera frame; the identity where no frame is named.
 
     Raises
     ------

@@ -118,7 +118,7 @@ class _GaugeFile(ResultFile):
 
 
 def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
-    """What everyone asks of a thickness, by the names used in files and on the command line."""
+    """Make the summary of a thickness, by the names used in files and on the command line."""
     return {
         "thickness_mm": gauge.thickness_mm,
         "u_mm": gauge.u_mm,
@@ -182,7 +182,7 @@ def read_thickness(path: Path) -> Characteristic:
 
 
 def read_lower_face(path: Path) -> LightPlane | None:
-    """The plane of the lower face in gauge.json; None without the file; InputError if it is damaged."""
+    """Read the plane of the lower face in gauge.json; None without the file; InputError if it is damaged."""
     if not path.is_file():
         return None
     none = dict.fromkeys(_MEMBERS, np.zeros(0, dtype=np.int64))

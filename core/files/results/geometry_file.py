@@ -56,7 +56,7 @@ class _GeometryFile(ResultFile):
 
 
 def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry:
-    """What the features of `inspection` are as geometry, in `frame`.
+    """Read the features of `inspection` as geometry, in `frame`.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry
 
 
 def read_part_frame(inspection: Path) -> Pose | None:
-    """The part coordinates into the camera frame that inspection.json holds; None without it, or without any.
+    """Read the pose from part to camera coordinates in inspection.json; None without it, or without any.
 
     Raises
     ------

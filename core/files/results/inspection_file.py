@@ -50,7 +50,7 @@ AGAIN = Message(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class InspectionFile:
-    """What inspection.json holds of an inspection.
+    """Content of inspection.json of an inspection.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ class _InspectionFile(ResultFile):
 
 
 def inspection_values(inspection: Inspection) -> dict[str, Any]:
-    """All of an inspection but its points, by the names used in the file and on the command line."""
+    """Make the values of an inspection, but its points, by the names of the file and the command line."""
     pose, frames = inspection.pose_camera_part, control_frames(inspection.plan)
     return {
         "schema_version": SCHEMA,

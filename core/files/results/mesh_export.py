@@ -54,7 +54,7 @@ def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
 
 
 def write_3mf(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME, name: str = "scan") -> None:
-    """Write the mesh as 3MF, unit millimetre: an object of what was measured, and one of what was filled.
+    """Write the mesh as 3MF, unit millimetre: an object of measured and one of filled triangles.
 
     Places are those of `frame`, which the description names.
 

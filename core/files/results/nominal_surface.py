@@ -20,7 +20,7 @@ _TODO = Message("advice.export_nominal_again", "export the part again, as STEP o
 
 
 def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -> Triangles:
-    """The triangles of a STEP file, or of an STL file, binary or text; those without area are left out.
+    """Read the triangles of a STEP file, or of an STL file, binary or text; those without area are left out.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -
 
 
 def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silent) -> dict[str, Triangles]:
-    """Every nominal surface a plan names, by that name; names are of files in `folder` or whole paths.
+    """Read every nominal surface of a plan, by its name; names are of files in `folder` or whole paths.
 
     A surface that several features name is as fine as the smallest of their tolerances wants it.
 
@@ -83,5 +83,5 @@ def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silen
 
 
 def nominal_names(plan: InspectionPlan) -> list[str]:
-    """Every nominal surface a plan names."""
+    """List the names of the nominal surfaces of a plan."""
     return sorted({feature.deviation.nominal for feature in plan.features if feature.deviation is not None})

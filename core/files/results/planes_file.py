@@ -196,7 +196,7 @@ class _PlanesFile(ResultFile):
 
 
 def planes_id(fan: Fan) -> str:
-    """Twelve hex digits that name these very planes."""
+    """Compute twelve hex digits that identify these planes."""
     return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
 
 
@@ -205,7 +205,7 @@ _FACTS = ("converged", "flatness_assumed")
 
 
 def tells_facts(path: Path) -> bool:
-    """Whether a planes.json says all that decides what its planes prove; not one of an earlier version, or damaged."""
+    """Whether a planes.json states all facts on which a verdict depends; not in an earlier version, or damaged."""
     try:
         tables = read_json(path)
     except InputError:
@@ -214,7 +214,7 @@ def tells_facts(path: Path) -> bool:
 
 
 def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> None:
-    """Write planes.json, which remembers the `camera` it was measured with; InputError if it cannot be written."""
+    """Write planes.json, with the `camera` it was measured with; InputError if it cannot be written."""
     degrees = {
         "constrained": [math.degrees(angle) for angle in calibration.angles],
         "free": [math.degrees(angle) for angle in calibration.free_angles],

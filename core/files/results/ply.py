@@ -55,7 +55,7 @@ _TODO = Message(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CloudFile:
-    """What cloud.ply holds: the points, and the id of the calibration they were measured with ("" if not told)."""
+    """Content of cloud.ply: the points, and the id of their calibration ("" if not stated)."""
 
     cloud: Cloud
     calibration_id: str
@@ -63,7 +63,7 @@ class CloudFile:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MeshFile:
-    """What mesh.ply holds: the surface, and the id of its calibration as in `CloudFile`."""
+    """Content of mesh.ply: the surface, and the id of its calibration as in `CloudFile`."""
 
     mesh: Mesh
     calibration_id: str

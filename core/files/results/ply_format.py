@@ -35,7 +35,10 @@ _COUNT_DIGITS = 19
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Ply:
-    """Elements by name, each a structured array (a list property is a field of k values), and the comments."""
+    """Elements of a PLY file by name, each a structured array, and the comments.
+
+    A list property is a field of k values.
+    """
 
     elements: Mapping[str, Rows]
     comments: tuple[str, ...] = ()
@@ -51,7 +54,7 @@ class _Property:
 
 
 def ply_bytes(ply: Ply, *, byte_order: str = "<") -> bytes:
-    """The file, binary, "<" or ">" as the byte order. Lists have their length in one byte, at most 255."""
+    """Encode a PLY file as binary, "<" or ">" as the byte order. Lists have their length in one byte, at most 255."""
     form = next(name for name, order in _ORDERS.items() if order == byte_order)
     head = ["ply", f"format {form} 1.0", *(f"comment {line}" for line in ply.comments)]
     parts: list[bytes] = []
@@ -72,7 +75,7 @@ def ply_bytes(ply: Ply, *, byte_order: str = "<") -> bytes:
 
 
 def parse_ply(data: bytes) -> Ply:
-    """The file read, without copying the points.
+    """Parse a PLY file, without copying the points.
 
     Raises
     ------

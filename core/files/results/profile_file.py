@@ -31,7 +31,7 @@ _TODO = Message(
 
 @dataclass(frozen=True, slots=True)
 class PictureStep:
-    """What one picture gave: its thickness and the standard uncertainty that is its own, in mm; or why it gave none."""
+    """Result of one picture: its thickness and its own standard uncertainty in mm; or the reason why it has none."""
 
     index: int
     name: str
@@ -43,18 +43,18 @@ class PictureStep:
 
     @property
     def used(self) -> bool:
-        """Whether it gave a step."""
+        """Whether the picture gave a thickness."""
         return self.reason is None
 
     @classmethod
     def none(cls, index: int, name: str, reason: Message) -> PictureStep:
-        """Of a picture that gave no step."""
+        """Make the entry of a picture without a thickness."""
         return cls(index, name, math.nan, math.nan, (0, 0), reason)
 
 
 @dataclass(frozen=True, slots=True)
 class ProfileFile:
-    """What profile.json says: the thickness with its U in mm, each picture's step, and which picture is shown."""
+    """Content of profile.json: the thickness with its U in mm, each picture's step, and which picture is shown."""
 
     thickness_mm: Finite
     U_mm: Finite

@@ -50,7 +50,7 @@ _TODO = Message("advice.mend_history", "mend the file, or move it away: the hist
 
 @dataclass(frozen=True, slots=True)
 class PastCheck:
-    """One check of a rig, in short; lengths as in `core.files.results.check_file.InterimCheck`.
+    """Summary of one check of a rig; lengths as in `core.files.results.check_file.InterimCheck`.
 
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
@@ -93,23 +93,23 @@ class PastCheck:
 
     @property
     def by_default_mm(self) -> float:
-        """`default_mm`; of checks before it was kept, whose `likelihoods` say that nothing was stated, `stated_mm`."""
+        """Limit in mm by the default stability: `default_mm`, or of older checks with nothing stated, `stated_mm`."""
         return self.stated_mm if math.isnan(self.default_mm) else self.default_mm
 
     @property
     def looked_at(self) -> tuple[str, str, str]:
-        """What was looked at, and by what: a check of the same takes its place."""
+        """Object of the check, and its means: a later check of the same replaces it."""
         return self.pictures_id, self.calibration_id, self.characteristic
 
     @property
     def values(self) -> dict[str, Any]:
-        """The check as its file has it."""
+        """Values of the check as its file has them."""
         due = None if self.due is None else self.due.isoformat()
         return {**asdict(self), "taken_at": self.taken_at.isoformat(), "due": due}
 
     @property
     def of_artefact(self) -> ArtefactCheck | None:
-        """An artefact against its certificate; None of pictures, or where the certificate was not kept."""
+        """Check of an artefact against its certificate; None of pictures, or where the certificate was not stored."""
         if not self.artefact or math.isnan(self.certified_u_mm + self.error_mm) or not self.unseen_mm > 0:
             return None
         known = Artefact(
@@ -132,7 +132,7 @@ class PastCheck:
     def of_measured(
         cls, measured: ArtefactCheck, taken_at: datetime, ids: tuple[str, str], celsius: float | None
     ) -> PastCheck:
-        """An artefact that has just been measured, with the `ids` of calibration and pictures."""
+        """Make the entry of an artefact that has just been measured, with the `ids` of calibration and pictures."""
         known = measured.artefact
         return cls(
             taken_at,
@@ -164,7 +164,7 @@ class PastCheck:
         likelihoods: tuple[float, ...] | None = None,
         default_mm: float = math.nan,
     ) -> PastCheck:
-        """A check that has just been made."""
+        """Make the entry of a check that has just been made."""
         return cls(
             check.taken_at, check.calibration_id, check.pictures_id, check.verdict, check.p, check.step_mm,
             check.offset_px, check.offset_mm, check.error_mm, check.unseen_mm, check.stated_mm, celsius,
@@ -173,7 +173,7 @@ class PastCheck:
 
 
 class CheckChart(NamedTuple):
-    """Checks by the same means, pictures or one artefact, in the order of time, and the limits for one of them."""
+    """Control chart of checks by the same means, pictures or one artefact, with the limits for one of them."""
 
     checks: tuple[PastCheck, ...]
     limits: ControlChart
@@ -181,17 +181,17 @@ class CheckChart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RigHistory:
-    """The checks of the rig called `name`, in the order their pictures were taken."""
+    """Checks of the rig called `name`, in the order their pictures were taken."""
 
     name: str
     checks: tuple[PastCheck, ...] = ()
 
     def of_calibration(self, calibration_id: str) -> tuple[PastCheck, ...]:
-        """Those with these calibrations."""
+        """Select the checks with these calibrations."""
         return tuple(check for check in self.checks if check.calibration_id == calibration_id)
 
     def artefacts(self, calibration_id: str, when: datetime) -> tuple[ArtefactCheck, ...]:
-        """Of each artefact measured with these calibrations, the check nearest in time to `when`."""
+        """Select for each artefact measured with these calibrations the check nearest in time to `when`."""
         found: dict[str, ArtefactCheck] = {}
         for one in sorted(self.of_calibration(calibration_id), key=lambda one: abs(one.taken_at - when)):
             if one.artefact not in found and (measured := one.of_artefact) is not None:
@@ -199,20 +199,20 @@ class RigHistory:
         return tuple(found[name] for name in sorted(found))
 
     def charted(self, check: PastCheck) -> CheckChart:
-        """A check among those like it."""
+        """Make the chart of a check and those like it."""
         return CheckChart(self.like(check), self.chart(check))
 
     def artefact_charts(self, calibration_id: str) -> tuple[CheckChart, ...]:
-        """Of each artefact measured with these calibrations all results, and the limits for the last of them."""
+        """Make for each artefact measured with these calibrations the chart of its results."""
         last = {one.artefact: one for one in self.of_calibration(calibration_id) if one.artefact}
         return tuple(self.charted(last[name]) for name in sorted(last))
 
     def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
-        """Those with the same calibrations by the same means: pictures, or one artefact."""
+        """Select the checks with the same calibrations by the same means: pictures, or one artefact."""
         return tuple(one for one in self.of_calibration(check.calibration_id) if one.artefact == check.artefact)
 
     def chart(self, check: PastCheck) -> ControlChart:
-        """The limits for a check: by those like it, taken before it, that have not failed.
+        """Compute the limits for a check from those like it, taken before it, that have not failed.
 
         Until there are enough of them, by what is stated of the rig and the check's own uncertainty.
         What is charted is the error of a step in parts of its height, times the height of this one: parts differ.
@@ -225,7 +225,9 @@ class RigHistory:
         return control_chart(np.array(before), math.hypot(check.stated_mm, check.unseen_mm / 2))
 
     def spread(self, calibration_id: str, when: datetime, stated: Stability | None = None) -> RigSpread | None:
-        """How much the rig changes, by the pictures of checks before the day of `when`; None where they do not say.
+        """Estimate how much the rig changes from the checks by pictures before the day of `when`.
+
+        None without information.
 
         Where its stability is `stated`, they say it only if that is more than the largest of what is stated: a
         statement may know of what no check has met, and no check makes it smaller. One that nothing changes stands.
@@ -261,7 +263,7 @@ class RigHistory:
         return RigSpread(factor, len(of_days), taken[0], taken[-1])
 
     def beyond(self, check: PastCheck) -> Message | None:
-        """What to say of a check that lies outside its limits; None within them, or where no stripe was found.
+        """Complain of a check that lies outside its limits; None within them, or where no stripe was found.
 
         An artefact is held to limits of its own history alone: its certificate is what E_n is for.
         """
@@ -294,7 +296,7 @@ class RigHistory:
         )
 
     def added(self, check: PastCheck) -> RigHistory:
-        """The history with another check."""
+        """Add another check to the history."""
         others = (one for one in self.checks if one.looked_at != check.looked_at)
         return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
 
@@ -305,17 +307,17 @@ class _HistoryFile(ResultFile):
 
 
 def own_folder() -> Path:
-    """The user's own folder for the program's data, or that which DATA names."""
+    """Return the user's own folder for the program's data, or that which DATA names."""
     return Path(os.environ.get(DATA) or platformdirs.user_data_path("trisect", appauthor=False))
 
 
 def history_file(name: str) -> Path:
-    """Where the history of the rig called `name` lies: in the user's own folder, or in that which DATA names."""
+    """Return the path of the history of the rig called `name`, in the user's own folder or that which DATA names."""
     return own_folder() / "rigs" / f"{name}.json"
 
 
 def read_history(name: str) -> RigHistory:
-    """The history of the rig called `name`, empty where there is none yet; InputError if it is damaged."""
+    """Read the history of the rig called `name`, empty where there is none yet; InputError if it is damaged."""
     path = history_file(name)
     if not path.exists():
         return RigHistory(name)
@@ -324,7 +326,7 @@ def read_history(name: str) -> RigHistory:
 
 
 def keep_check(name: str, check: PastCheck) -> RigHistory:
-    """Add a check to the history of the rig called `name`; returns it all.
+    """Add a check to the history of the rig called `name` and write it; returns it all.
 
     Raises
     ------

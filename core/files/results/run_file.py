@@ -35,7 +35,7 @@ _USES = {use.name.lower(): use for use in CrossingUse} | {str(use.message): use 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """What is known of a run; each step adds its own part.
+    """Record of a run; each step adds its own part.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class RunRecord:
         settings: Mapping[str, Any],
         notes: Sequence[Message | str],
     ) -> RunRecord:
-        """The record after `step`; what an earlier run of the same step said is replaced."""
+        """Add `step` to the record; the part of an earlier run of the same step is replaced."""
         return replace(
             self,
             settings={**self.settings, step: settings},
@@ -83,7 +83,7 @@ class RunRecord:
         )
 
     def without(self, steps: Collection[str]) -> RunRecord:
-        """The record as if these steps had not been done, but for the hashes of what they read."""
+        """Remove these steps from the record, but keep the hashes of the files they read."""
 
         def left(told: Mapping[str, T]) -> dict[str, T]:
             return {step: one for step, one in told.items() if step not in steps}
@@ -99,7 +99,7 @@ class RunRecord:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The notes of all steps, each once: the gravest first, else in the order the steps were done."""
+        """Notes of all steps, each once: the gravest first, else in the order of the steps."""
         return gravest_first(note for notes in self.notes.values() for note in notes)
 
 

@@ -91,7 +91,7 @@ def read_features(path: Path, key: str) -> ScanFeatures | None:
 
 
 def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
-    """Arrays that hold a scan's features, and the key of what they rest on."""
+    """Pack a scan's features into arrays, with the key of what they rest on."""
     crossings = features.crossings
     return {
         "features_key": np.array(key),
@@ -116,7 +116,7 @@ def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
 
 
 def unpack_features(arrays: Arrays) -> ScanFeatures:
-    """The features that `pack_features` packed; KeyError or ValueError if the arrays do not fit together."""
+    """Unpack the features of `pack_features`; KeyError or ValueError if the arrays do not fit together."""
     frames = zip(
         unpack_texts(arrays["frame_names"]),
         unpack_centrelines("sweep", arrays),

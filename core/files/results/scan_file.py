@@ -92,7 +92,7 @@ _MEMBERS = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanFile:
-    """What scan.npz holds.
+    """Content of scan.npz.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def read_scan(path: Path) -> ScanFile:
 
 
 def scan_facts_of(path: Path) -> ScanFacts:
-    """The facts in scan.npz alone; nothing is known where there is none. InputError if it is damaged."""
+    """Read the facts in scan.npz alone; nothing is known where there is none. InputError if it is damaged."""
     if not path.exists():
         return ScanFacts()
     arrays = read_arrays(path, _FACT_MEMBERS, todo=_TODO)

@@ -17,7 +17,7 @@ from core.messages import Command, Message
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Measured:
-    """A characteristic of one scan.
+    """Measured characteristic of one scan.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Measured:
 
 
 def measured_in(folder: Path, name: str) -> Measured:
-    """The characteristic `name` of a folder: the thickness of gauge.json, or one of inspection.json.
+    """Read the characteristic `name` of a folder: the thickness of gauge.json, or one of inspection.json.
 
     Raises
     ------

@@ -45,12 +45,12 @@ def write_study(folder: Path, study: Study) -> Path:
 
 
 def study_path(folder: Path, id_: str) -> Path:
-    """Where the project in `folder` keeps the study called `id_`."""
+    """Return the path of the study called `id_` in the project in `folder`."""
     return folder / STUDIES / id_ / NAME
 
 
 def study_values(study: Study) -> dict[str, Any]:
-    """A study by the names of study.json; what is infinite or not known becomes null there."""
+    """Make the values of a study by the names of study.json; infinite or unknown ones become null."""
     match study:
         case RepeatStudy():
             values = _repeats(study)
@@ -97,7 +97,7 @@ def _doubted(doubted: Doubted) -> dict[str, Any]:
 
 
 def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
-    """A budget: its rows, and what they add up to."""
+    """Make the values of a budget: its rows, and their sum."""
     return {
         "rows": [row_values(row) | {"share": budget.share(row)} for row in budget.rows],
         "value": budget.value,
@@ -112,7 +112,7 @@ def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
 
 
 def row_values(row: Contribution) -> dict[str, Any]:
-    """A row of a budget; `u_input` in `unit`, `contribution` in the result's."""
+    """Make the values of a row of a budget; `u_input` in `unit`, `contribution` in the result's."""
     return {
         "source": kept(row.words),
         "value": row.value,
@@ -126,7 +126,7 @@ def row_values(row: Contribution) -> dict[str, Any]:
 
 
 def zones_values(zones: Zones) -> dict[str, Any]:
-    """The rule of a decision, its guard band and its zones, all as deviations."""
+    """Make the values of the rule of a decision: its guard band and its zones, all as deviations."""
     return {
         "rule": "ISO 14253-1",
         "lower": zones.lower,

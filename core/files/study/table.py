@@ -27,7 +27,7 @@ A table without it says of no result that it is doubted, as tables typed by hand
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Cells as text, by column; `lines` are the numbers of the rows in the file, from 1."""
+    """Table of cells as text, by column; `lines` are the numbers of the rows in the file, from 1."""
 
     path: Path
     lines: tuple[int, ...]
@@ -38,7 +38,7 @@ class Table:
         return len(self.lines)
 
     def name_of(self, names: Sequence[str]) -> str | None:
-        """Which of `names` the table has; None if none of them. InputError if it has several."""
+        """Find which of `names` the table has; None if none of them. InputError if it has several."""
         found = [name for name in names if name in self.columns]
         if len(found) > 1:
             raise InputError(
@@ -49,7 +49,7 @@ class Table:
         return found[0] if found else None
 
     def texts(self, *names: str) -> tuple[str, ...]:
-        """Of the column called by one of `names`; InputError if there is none, or a cell is empty."""
+        """Read the texts of the column called by one of `names`; InputError if there is none, or a cell is empty."""
         name = self._needed(names)
         for line, cell in zip(self.lines, self.columns[name], strict=True):
             if not cell:
@@ -62,22 +62,25 @@ class Table:
 
     @property
     def doubts(self) -> tuple[Doubts, ...]:
-        """Of the result of each row; () where nothing stands in its column, or there is no such column."""
+        """Doubts about the result of each row; () where the column is empty or missing."""
         cells = self.columns.get(DOUBTS, ("",) * len(self))
         return tuple(tuple(map(Doubt.named, cell.split())) for cell in cells)
 
     def numbers(self, *names: str) -> tuple[float, ...]:
-        """Of the column called by one of `names`; InputError if there is none, or a cell is no finite number."""
+        """Read the numbers of the column called by one of `names`.
+
+        InputError if there is none, or a cell is no finite number.
+        """
         name = self._needed(names)
         return tuple(self._number(name, row) for row in range(len(self)))
 
     def numbers_if_any(self, *names: str) -> tuple[float, ...] | None:
-        """As `numbers`, or None if there is no such column, or nothing is in it."""
+        """Read numbers as `numbers`, or None if there is no such column, or nothing is in it."""
         name = self.name_of(names)
         return None if name is None or not any(self.columns[name]) else self.numbers(name)
 
     def numbers_or(self, default: float, *names: str) -> tuple[float, ...]:
-        """As `numbers`, with `default` where the cell is empty or there is no such column."""
+        """Read numbers as `numbers`, with `default` where the cell is empty or there is no such column."""
         name = self.name_of(names)
         if name is None:
             return (default,) * len(self)
@@ -134,12 +137,12 @@ def read_table(path: Path) -> Table:
 
 
 def separator_of(head: str) -> str:
-    """What stands between the cells of a table whose head line is `head`."""
+    """Find the separator of a table whose head line is `head`."""
     return next((one for one in SEPARATORS if one in head), ",")
 
 
 def with_rows(text: str, more: str) -> str:
-    """A table with the rows of another below its own, in the same order but for their doubts, which have a column.
+    """Append the rows of another table, in the same order of columns but for doubts, which have a column.
 
     Parameters
     ----------
@@ -168,7 +171,7 @@ def with_rows(text: str, more: str) -> str:
 
 
 def table_of(text: str, path: Path) -> Table:
-    """The table that stands in `text`; `path` is for complaints, and names in it are seen from its folder.
+    """Parse the table in `text`; `path` is for complaints, and names in it are relative to its folder.
 
     Raises
     ------
