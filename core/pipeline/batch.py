@@ -43,7 +43,7 @@ Measure = Callable[..., SetResult]
 
 
 def unwatched(told: SetUpdate) -> None:
-    """Take it without a word: the default."""
+    """Ignore an update: the default watcher."""
 
 
 def run_batch(
@@ -116,7 +116,7 @@ def measure_sets(
 
 
 def sets_in(folder: Path) -> tuple[Path, ...]:
-    """The folder itself if it is a recording set, else those of its folders that are, by name.
+    """List the recording sets in a folder by name; the folder itself if it is one.
 
     Raises
     ------

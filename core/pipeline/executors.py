@@ -29,7 +29,7 @@ CONNECT_S = 10.0
 
 @contextmanager
 def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
-    """The executor that `text` names, shut down at the end.
+    """Make the executor that `text` names, and shut it down at the end.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ _to_end = threading.Event()
 
 
 def is_to_end() -> bool:
-    """Whether this process measures for another one and was asked to end: what it measures is to be cancelled."""
+    """Whether this process measures for another one and was asked to end, so that its measurement is cancelled."""
     return _to_end.is_set()
 
 

@@ -40,7 +40,7 @@ from core.settings.options import Options
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RunResult:
-    """What a whole run measured, and where its files are.
+    """Results of a whole run, and where its files are.
 
     `gauge` is None where no thickness was asked for and the part has no two parallel faces. `results` are all that are
     in the folder, with the verdict on the part. `files` holds what was

@@ -18,7 +18,7 @@ SET_COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class SetResult:
-    """What became of one recording set.
+    """Result of one recording set in a batch.
 
     Parameters
     ----------
@@ -54,14 +54,14 @@ class SetResult:
 
 @dataclass(frozen=True, slots=True)
 class SetProgress:
-    """How far a recording set is that is being measured: its stage, and the share of the whole that is done, 0 … 1."""
+    """Progress of a recording set that is being measured: its stage, and the share of the whole that is done, 0 … 1."""
 
     stage: str
     share: float
 
 
 class SetCells(NamedTuple):
-    """A row of a table of sets; "" for what there is not."""
+    """Cells of a row of a table of sets; "" for missing ones."""
 
     thickness: str
     """In mm, without the unit, as U."""
@@ -74,7 +74,7 @@ class SetCells(NamedTuple):
 
 
 def set_cells(result: SetResult, words: Words) -> SetCells:
-    """What a table says of a set."""
+    """Make the cells of a set in a table."""
     seconds = words("{seconds:.1f} s", seconds=result.seconds)
     if result.error:
         return SetCells("", "", "", "", "", seconds)

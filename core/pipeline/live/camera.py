@@ -20,7 +20,7 @@ from core.pipeline.live.events import CameraDetail
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundView:
-    """What one frame shows of a target: the view and how blurred its edges are, or why there is none.
+    """View found in one frame: the view and the blur of its edges, or the reason why there is none.
 
     `counted` are the columns and rows of a board of another size that is seen instead.
     """
@@ -43,7 +43,7 @@ def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
 
 
 class LiveCamera:
-    """The camera step of a live recording."""
+    """Camera step of a live recording."""
 
     def __init__(self, context: LiveContext) -> None:
         self._context, self._target = context, context.request.rig.camera_target
@@ -57,15 +57,15 @@ class LiveCamera:
 
     @property
     def paired(self) -> bool:
-        """While the target is seen: its corners belong to the picture they were found in."""
+        """Whether the target is seen: its corners belong to the picture they were found in."""
         return self._look is not None and self._look.view is not None
 
     def begin(self) -> None:
-        """Lasers off."""
+        """Switch the lasers off."""
         self._context.switch(Lasers(fan=False, hand=False))
 
     def frame(self, frame: Frame) -> None:
-        """Look for the target, if the last look is over."""
+        """Look for the target in a frame, if the last look is over."""
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._context.request.camera)
@@ -74,7 +74,7 @@ class LiveCamera:
         self._context.worker.start(find_view, frame, self._target, self._context.request.camera)
 
     def poll(self) -> Frame | None:
-        """Judge what has been seen, and take it."""
+        """Judge the view that was found last, and take it if it is good."""
         look = self._context.worker.take()
         if not isinstance(look, FoundView) or self._judge is None:
             return None
@@ -93,7 +93,7 @@ class LiveCamera:
         return look.frame
 
     def detail(self, shown: Frame) -> CameraDetail | None:
-        """What was seen last; the corners only with their own picture."""
+        """Return the view found last, with its corners only for their own picture."""
         if self._look is None or self._judge is None:
             return None
         view = self._look.view
@@ -110,10 +110,10 @@ class LiveCamera:
         )
 
     def rest(self) -> None:
-        """Nothing waits."""
+        """Do nothing: no work is waiting."""
 
     def tell(self, command: Command) -> None:
-        """Capture, Auto, Discard and LookFor."""
+        """Handle the commands Capture, Auto, Discard and LookFor."""
         match command:
             case Capture():
                 self._capture = True
@@ -127,7 +127,7 @@ class LiveCamera:
                 self._context.recorded -= 1
 
     def finish(self) -> None:
-        """All is on the disk already."""
+        """Do nothing: all pictures are on the disk already."""
 
     def _take(self, frame: Frame, view: TargetView, judge: CaptureJudge) -> None:
         name = f"view{self._number:02d}"
@@ -141,10 +141,10 @@ class LiveCamera:
 
 
 def nothing_taken(why: Message) -> Message:
-    """The notice after Capture was pressed and no view was taken."""
+    """Make the notice that Capture was pressed and no view was taken."""
     return Message("live.nothing_taken", "Nothing was taken. {why}", why=why)
 
 
 def named(view: TargetView, name: str) -> TargetView:
-    """The view under another name."""
+    """Rename a view."""
     return TargetView(view.points, view.uv, view.sigma, name)

@@ -25,7 +25,7 @@ CHECK_EVERY_S = 1.0
 
 
 class ScanChecks:
-    """Tells the window the checks and the advice of a scan whenever they change."""
+    """Checks and advice of a scan, sent to the window whenever they change."""
 
     def __init__(self, context: LiveContext, previewer: ScanPreviewer) -> None:
         self._context, self._previewer = context, previewer
@@ -40,16 +40,16 @@ class ScanChecks:
 
     @property
     def are_due(self) -> bool:
-        """Whether it is time to look at the reference again."""
+        """Whether it is time to check the reference again."""
         return time.monotonic() - self._looked_s >= CHECK_EVERY_S
 
     def begin(self, image_size: tuple[int, int]) -> None:
-        """The first picture is there, of (width, height)."""
+        """Start the checks with the first picture, of (width, height)."""
         self._image_size = image_size
         self._tell(None, None)
 
     def accepted(self) -> None:
-        """A reference has been taken."""
+        """Record that a reference has been taken."""
         request = self._context.request
         camera, fan = request.camera, request.fan
         if camera is not None and fan is not None and not _is_readjusted(request):
@@ -58,19 +58,19 @@ class ScanChecks:
         self.reference()
 
     def reference(self, departed: Message | None = None) -> None:
-        """There is a reference; the latest picture suits it, or why not."""
+        """Record whether the latest picture agrees with the reference, or how it has `departed`."""
         self._looked_s = time.monotonic()
         self._tell(self._previewer.fan_lines, departed)
 
     def stripes(self, stripes: Sequence[Centreline]) -> None:
-        """These are seen of the hand-held laser."""
+        """Record the stripes of the hand-held laser."""
         context = self._context
         advice = self._adviser.watch(stripes, self._previewer.full_scale, context.settings, context.capabilities)
         if advice is not None:
             context.emit(advice)
 
     def configured(self) -> None:
-        """The source has been told other settings."""
+        """Record that the settings of the source have changed."""
         self._adviser.forget()
 
     def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: Message | None) -> None:
@@ -98,7 +98,7 @@ class ScanChecks:
 
 
 def planes_taken(request: LiveRequest) -> Taken | None:
-    """By which camera and when the fan's poses were recorded; None where that is not known."""
+    """Find by which camera and when the fan's poses were recorded; None where that is not known."""
     if request.kept_planes is None or request.camera is None:
         return None
     try:
@@ -108,7 +108,7 @@ def planes_taken(request: LiveRequest) -> Taken | None:
 
 
 def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]:
-    """The fan's stripes in each pose of its calibration; none if they cannot be known any more."""
+    """Read the fan's stripes in each pose of its calibration; none if they are not known any more."""
     if request.kept_planes is None:
         return ()
     try:

@@ -17,7 +17,7 @@ from core.settings.options import Options
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveRequest:
-    """A live recording to be made.
+    """Request for a live recording.
 
     Parameters
     ----------
@@ -71,65 +71,67 @@ class LiveRequest:
 
 @dataclass(frozen=True, slots=True)
 class Capture:
-    """Take this view or pose now, whatever is thought of it."""
+    """Command to take this view or pose now, whatever its quality."""
 
 
 @dataclass(frozen=True, slots=True)
 class Auto:
-    """Take views and poses without being told, or no longer."""
+    """Command to take views and poses automatically, or no longer."""
 
     on: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """Switch the lasers, if the source can."""
+    """Command to switch the lasers, if the source can."""
 
     lasers: Lasers
 
 
 @dataclass(frozen=True, slots=True)
 class TakeReference:
-    """The hand-held laser is off, the fan on: take the reference. Said again while waiting: take it as it is."""
+    """Command to take the reference: the hand-held laser is off, the fan on. Said again while waiting: take it as
+    it is.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Record nothing until Resume."""
+    """Command to record nothing until Resume."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume:
-    """Record."""
+    """Command to record again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Mark the newest frame that was recorded, to be found again."""
+    """Command to mark the newest recorded frame, to be found again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Finish: what has been recorded is complete."""
+    """Command to finish: what has been recorded is complete."""
 
 
 @dataclass(frozen=True, slots=True)
 class Configure:
-    """Tell the source new settings."""
+    """Command to change the settings of the source."""
 
     settings: SourceSettings
 
 
 @dataclass(frozen=True, slots=True)
 class Discard:
-    """Put the view or pose of this name aside, into the folder `discarded`."""
+    """Command to move the view or pose of this name into the folder `discarded`."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class LookFor:
-    """Look for another target of the camera's from now on: it was stated wrongly."""
+    """Command to look for another camera target from now on: it was stated wrongly."""
 
     target: Target
 

@@ -23,36 +23,36 @@ DISCARDED = "discarded"
 
 
 class LiveStep(Protocol):
-    """What camera, planes and scan do with the frames of a live source."""
+    """Step of a live recording: camera, planes or scan."""
 
     @property
     def paired(self) -> bool:
-        """Whether a frame that has been looked at is to be shown with what was found in it, even after a later one."""
+        """Whether a frame is shown together with what was found in it, even after a later frame has come."""
 
     def begin(self) -> None:
-        """The source is open."""
+        """Start the step: the source is open."""
 
     def frame(self, frame: Frame) -> None:
-        """A frame has come: record it if it is to be recorded, and have it looked at if there is time."""
+        """Record a frame if it is to be recorded, and have it analysed if there is time."""
 
     def poll(self) -> Frame | None:
-        """See whether a frame has been looked at; the frame that `detail` is about now, if that is news."""
+        """Take the result of a finished analysis, and return its frame if `detail` has changed."""
 
     def detail(self, shown: Frame) -> Detail | None:
-        """What is known now, to go with the picture of this frame; asked for when it is really shown."""
+        """Return what is found so far, to be shown with the picture of this frame; called only when it is shown."""
 
     def rest(self) -> None:
-        """What is known has been shown: have some of what could wait done, if there is time."""
+        """Do some of the waiting work, if there is time, after a picture has been shown."""
 
     def tell(self, command: Command) -> None:
-        """A command that is not for the loop itself."""
+        """Handle a command that is not for the loop itself."""
 
     def finish(self) -> None:
-        """No frame comes any more: have everything on the disk."""
+        """Write everything to the disk: no more frames come."""
 
 
 class Worker:
-    """Does one thing at a time on a thread of its own; jobs that come while it is busy are refused."""
+    """Thread that does one job at a time; jobs that come while it is busy are refused."""
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="live")
@@ -64,14 +64,14 @@ class Worker:
         return self._job is not None
 
     def start(self, job: Callable[..., Any], *args: Any) -> bool:
-        """Begin `job(*args)`; False if something else is being done."""
+        """Start `job(*args)`; False if the worker is busy."""
         if self._job is not None:
             return False
         self._job = self._pool.submit(job, *args)
         return True
 
     def take(self, timeout_s: float = 0.0) -> Any | None:
-        """The result of the job if it is done, once, else None; raises what the job raised."""
+        """Return the result of a finished job, once, else None; raises what the job raised."""
         job = self._job
         if job is None or not (job.done() or timeout_s > 0):
             return None
@@ -86,12 +86,12 @@ class Worker:
                 self._job = None
 
     def close(self) -> None:
-        """Take no more jobs; one that runs ends by itself and is not waited for."""
+        """Refuse further jobs; one that runs ends by itself and is not waited for."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
 class LiveContext:
-    """What every step works with.
+    """Source, events and files that every live step works with.
 
     `recorded` counts what is on the disk, `lost` frames the disk was too slow for. `settings` is what the source has
     been told, `capabilities` what it can be told, `rate_hz` how many frames a second have come of late.
@@ -109,40 +109,40 @@ class LiveContext:
         self._told: Message | None = None
 
     def close(self) -> None:
-        """No more pictures come."""
+        """Close the writers: no more pictures come."""
         self.worker.close()
         self._log.close()
 
     def switch(self, lasers: Lasers) -> bool:
-        """Want the lasers like this from now on; True if the source switches them itself."""
+        """Set the lasers from now on; True if the source switches them itself."""
         self.lasers = lasers
         return self.source.lasers(lasers)
 
     def dealt_with(self, frame: Frame) -> None:
-        """What a frame shows was taken, or is of no use: a source that waits for that need not."""
+        """Tell the source that a frame's content was taken, or is useless, so that it need not wait any more."""
         if isinstance(self.source, WaitingSource):
             self.source.go_on(frame)
 
     def ask(self, sentence: Message, button: str, answer: Command) -> None:
-        """Ask a person to do something."""
+        """Ask the user to do something and then press a button."""
         self._asking = True
         self.emit(LiveAsk(sentence, button, answer))
 
     def answered(self) -> None:
-        """What was asked for is done."""
+        """Withdraw the request to the user: it has been followed."""
         if self._asking:
             self._asking = False
             self.emit(LiveAnswered())
 
     def notice(self, sentence: Message, *, refused: bool = False) -> None:
-        """Tell a sentence, or that a picture was `refused` and why, but not the same one twice in a row."""
+        """Show a sentence, or that a picture was `refused` and why, but never the same one twice in a row."""
         if sentence != self._told:
             self._told = sentence
             self.emit(LiveNotice(sentence, refused))
 
     @property
     def camera(self) -> str:
-        """What the open camera is known by in logs; "" for a replay, which is none."""
+        """Name of the open camera in logs; "" for a replay, which is none."""
         return camera_name(self.request.source, self.source)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None) -> None:
@@ -159,7 +159,7 @@ class LiveContext:
             self._log.add(logged(path.name, frame, frame.dropped, self.camera))
 
     def took(self, name: str, picture: Picture) -> None:
-        """A view, pose or reference is on the disk."""
+        """Report that a view, pose or reference is on the disk."""
         self._told = None
         self.emit(LiveTaken(name, Display.of(self.request.rig, THUMBNAIL_PX).reduced(picture)[0]))
 
@@ -175,5 +175,5 @@ class LiveContext:
 
 
 def as_sentence(what: Message) -> Message:
-    """What an InputError says, as a sentence of its own."""
+    """Make a sentence of the message of an InputError."""
     return Message("live.reason", "{reason:capital}.", reason=what)

@@ -20,7 +20,7 @@ from core.scan.preview.shown import FramePreview, PreviewCloud
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CameraDetail:
-    """What the live picture shows of the camera's target.
+    """Camera target in the live picture, and what is missing from the views.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class CameraDetail:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlanesDetail:
-    """What the live picture shows of the plane target and the fan on it.
+    """Plane target in the live picture and the fan's stripes on it.
 
     `stripes` are (N, 2) in pixels each, none with a picture of another frame; `line` is the fan line (from 0) each of
     them is likely to be, −1 where that is not clear. Else as CameraDetail; `poses` are taken.
@@ -82,7 +82,7 @@ ScanStage = Literal["reference", "ready", "scanning", "paused"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanDetail:
-    """What the scan shows so far.
+    """Preview of the scan so far.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ Detail = CameraDetail | PlanesDetail | ScanDetail
 
 @dataclass(frozen=True, slots=True)
 class LiveStarted:
-    """The first picture is there: the source's name, the full (width, height) of its pictures, what it can be told."""
+    """Event that the first picture has come: the source's name, the full (width, height), the settings it has."""
 
     name: str
     image_size: tuple[int, int]
@@ -128,7 +128,7 @@ class LiveStarted:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveView:
-    """A picture to show.
+    """Event with a picture to show.
 
     Parameters
     ----------
@@ -158,7 +158,10 @@ class LiveView:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveTaken:
-    """A view, a pose or the reference is on the disk: its name without ending, and a small (h, w) picture of it."""
+    """Event that a view, a pose or the reference is on the disk.
+
+    Its name has no ending, its small picture is (h, w).
+    """
 
     name: str
     thumbnail: NDArray[np.uint8]
@@ -166,7 +169,7 @@ class LiveTaken:
 
 @dataclass(frozen=True, slots=True)
 class LiveAsk:
-    """A person must do something and then press a button of this name (a label), which sends `answer`.
+    """Event that the user must do something and then press a button of this name (a label), which sends `answer`.
 
     It stands until LiveAnswered, or until another one takes its place.
     """
@@ -178,12 +181,12 @@ class LiveAsk:
 
 @dataclass(frozen=True, slots=True)
 class LiveAnswered:
-    """What LiveAsk asked for is done."""
+    """Event that the request of LiveAsk has been followed."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiveNotice:
-    """A sentence to show; nothing stops for it. Or that a picture was `refused`, and why."""
+    """Event with a sentence to show; nothing stops for it. Or that a picture was `refused`, and why."""
 
     sentence: Message
     refused: bool = False
@@ -191,7 +194,7 @@ class LiveNotice:
 
 @dataclass(frozen=True, slots=True)
 class LiveAdvice:
-    """How to expose the stripes better; nothing where all is well.
+    """Event with advice on the exposure of the stripes; empty where all is well.
 
     `settings` is what to tell the source; None if a person must find out, because what is set now is not known.
     """
@@ -202,26 +205,26 @@ class LiveAdvice:
 
 @dataclass(frozen=True, slots=True)
 class LiveChecks:
-    """What was looked at before the scan, each with what came of it; comes again whenever that changes."""
+    """Event with the checks before the scan and their results; sent again whenever they change."""
 
     checks: tuple[Check, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class LiveUnplugged:
-    """The source is gone; it is looked for every second. What is recorded is kept."""
+    """Event that the source is gone; it is looked for every second. What is recorded is kept."""
 
     sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class LiveBack:
-    """The source is there again and the recording goes on."""
+    """Event that the source is there again and the recording continues."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiveSaving:
-    """It is being stopped, and so many frames still wait for the disk, or are there and have not been looked at.
+    """Event that the recording is stopping, and how many frames wait for the disk or for their analysis.
 
     Comes several times a second until all are.
     """
@@ -232,7 +235,7 @@ class LiveSaving:
 
 @dataclass(frozen=True, slots=True)
 class LiveEnded:
-    """The recording has ended: its folder, its pictures and how many were lost; `error` if it ended by itself."""
+    """Event that the recording has ended: its folder, its pictures and how many were lost; `error` if it failed."""
 
     folder: Path
     recorded: int

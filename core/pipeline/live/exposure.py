@@ -18,20 +18,20 @@ LOOKED_AT = 9
 
 
 class ExposureAdviser:
-    """Watches how the stripes of a live source are exposed."""
+    """Adviser on the exposure of the stripes of a live source."""
 
     def __init__(self) -> None:
         self._seen: deque[Exposure] = deque(maxlen=LOOKED_AT)
         self._told = LiveAdvice()
 
     def forget(self) -> None:
-        """The source was told other settings: what was seen before does not count."""
+        """Forget the pictures so far: the settings of the source have changed."""
         self._seen.clear()
 
     def watch(
         self, stripes: Sequence[Centreline], full_scale: float, told: SourceSettings, can: Capabilities
     ) -> LiveAdvice | None:
-        """What to advise after this picture too; None if that is no news.
+        """Return the advice after one more picture; None if it has not changed.
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class ExposureAdviser:
 
 
 def advised(exposure: Exposure, told: SourceSettings, can: Capabilities) -> LiveAdvice:
-    """One sentence and the settings it speaks of, exposure time before gain; neither where all is well."""
+    """Make one sentence of advice and the settings it names, exposure time before gain; none where all is well."""
     if exposure.is_good:
         return LiveAdvice()
     why = _why(exposure)

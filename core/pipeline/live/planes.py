@@ -55,7 +55,7 @@ class _Pending:
 
 
 class LivePlanes:
-    """The planes step of a live recording, and that of an interim check."""
+    """Planes step of a live recording, also of an interim check."""
 
     def __init__(self, context: LiveContext) -> None:
         self._context, request = context, context.request
@@ -77,11 +77,11 @@ class LivePlanes:
 
     @property
     def paired(self) -> bool:
-        """While the target is seen: its corners and the stripes belong to the picture they were found in."""
+        """Whether the target is seen: its corners and the stripes belong to the picture they were found in."""
         return self._look is not None and self._look.pose.view is not None
 
     def begin(self) -> None:
-        """The fan on; a pose that was not finished when the source was unplugged is given up."""
+        """Switch the fan on; an unfinished pose is dropped when the source was unplugged."""
         self._context.answered()
         self._pending, self._stage = None, "looking"
         self._switches = self._context.switch(_FAN_ON)
@@ -91,7 +91,7 @@ class LivePlanes:
             )
 
     def frame(self, frame: Frame) -> None:
-        """Look at the pose, or take the picture with the fan off."""
+        """Look for the pose in a frame, or take the picture with the fan off."""
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
@@ -107,7 +107,7 @@ class LivePlanes:
             self._second_picture(self._pending, frame)
 
     def poll(self) -> Frame | None:
-        """See what has been found, and take the pose."""
+        """Judge the pose that was found last, and take it if it is good."""
         result = self._context.worker.take()
         if isinstance(result, PoseFeatures) and self._pending is not None and self._judge is not None:
             self._finish_pair(self._pending, result, self._judge)
@@ -117,7 +117,7 @@ class LivePlanes:
         return None
 
     def detail(self, shown: Frame) -> PlanesDetail | None:
-        """What was seen last; corners and stripes only with their own picture."""
+        """Return what was found last, with corners and stripes only for their own picture."""
         look = self._look
         if look is None or self._judge is None:
             return None
@@ -136,10 +136,10 @@ class LivePlanes:
         )
 
     def rest(self) -> None:
-        """Nothing waits."""
+        """Do nothing: no work is waiting."""
 
     def tell(self, command: Command) -> None:
-        """Capture, Auto and Discard; and that the source has been told other settings."""
+        """Handle the commands Capture, Auto and Discard, and a change of the source's settings."""
         match command:
             case Configure():
                 self._adviser.forget()
@@ -156,7 +156,7 @@ class LivePlanes:
                 self._context.recorded -= 1
 
     def finish(self) -> None:
-        """All is on the disk already."""
+        """Do nothing: all pictures are on the disk already."""
 
     def _judged(self, look: FoundPose, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose

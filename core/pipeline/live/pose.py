@@ -32,7 +32,7 @@ _ROOM, _LEAST_ROOM_PX = 0.6, 60.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundPose:
-    """What one frame with the fan on shows: the pose's features, edge blur, and for each stripe its likely line."""
+    """Pose found in one frame with the fan on: its features, edge blur, and for each stripe its likely line."""
 
     frame: Frame
     pose: PoseFeatures
@@ -49,7 +49,7 @@ def find_pose(
     lines: int,
     around: Array | None = None,
 ) -> FoundPose:
-    """Find the target and the stripes on it in one frame; first `around` (N, 2), where it was seen last, in pixels."""
+    """Find the target and the stripes on it in one frame; first `around` (N, 2) px, where it was seen last."""
     pose = None if around is None else _pose_around(around, frame.picture, target, camera, settings)
     if pose is None:
         pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
@@ -118,7 +118,7 @@ def measure_pair(
     settings: StripeSettings | None,
     margin_mm: float | None,
 ) -> PoseFeatures:
-    """Read a pose as its calibration will."""
+    """Measure a pose as its calibration will."""
     return measure_plane_pose(name, on, off, target, camera, settings, margin_mm)
 
 
@@ -154,7 +154,7 @@ def _numbered_stripes(
 
 
 def settings_of(pose: PoseFeatures) -> StripeSettings:
-    """Width and contrast of the stripes found, so that they need not be looked for in each picture."""
+    """Return width and contrast of the stripes found, so that they need not be searched in each picture."""
     width = float(np.median(np.concatenate([piece.width for piece in pose.centrelines])))
     strength = float(np.quantile(np.concatenate([piece.strength for piece in pose.centrelines]), 0.2))
     return StripeSettings(WIDTH_IN_SIGMA * width, strength)

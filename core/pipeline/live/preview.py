@@ -27,7 +27,7 @@ SETTINGS_FROM = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PreviewedFrame:
-    """A frame and what is shown of it."""
+    """Frame with its preview."""
 
     frame: Frame
     preview: FramePreview
@@ -35,20 +35,20 @@ class PreviewedFrame:
 
 @dataclass(frozen=True, slots=True)
 class PreviewFailed:
-    """The preview has come to its end, and why; the recording goes on."""
+    """Failure of the preview, with its reason; the recording goes on."""
 
     sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceMismatch:
-    """Why a picture without the hand-held laser does not suit the reference; None if it does."""
+    """Reason why a picture without the hand-held laser does not agree with the reference; None if it does."""
 
     reason: Message | None
 
 
 class ScanPreviewer:
-    """Looks at the reference and then at frames, one at a time.
+    """Previewer of a scan: it reads the reference and then frames, one at a time.
 
     Without a calibrated camera and fan it shows stripes only. An error nobody thought of ends the preview, never the
     recording.
@@ -75,18 +75,18 @@ class ScanPreviewer:
         return 255.0 if self._reference is None else self._reference.full_scale
 
     def departed(self, picture: Picture) -> ReferenceMismatch:
-        """Whether a picture still suits the reference."""
+        """Check whether a picture still agrees with the reference."""
         if self._reference is None:
             return ReferenceMismatch(None)
         seen = FrameReader(self._reference, None)((0, ("", picture)))
         return ReferenceMismatch(None if seen.exclusion is Exclusion.WITHOUT_STRIPE else seen.reason)
 
     def fan_cloud(self) -> PreviewCloud:
-        """The fan's own points."""
+        """Return the fan's own points."""
         return PreviewCloud.joined([]) if self._preview is None else self._preview.cloud()
 
     def read_reference(self, picture: Picture) -> Picture:
-        """Get ready with this reference, and return it.
+        """Prepare the preview for this reference, and return it.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class ScanPreviewer:
         return picture
 
     def look(self, index: int, name: str, frame: Frame) -> PreviewedFrame | PreviewFailed | None:
-        """What frame number `index` of the recording shows."""
+        """Preview frame number `index` of the recording."""
         if self._reference is None or self._failed:
             return None
         try:
@@ -109,12 +109,12 @@ class ScanPreviewer:
 
     @property
     def has_more(self) -> bool:
-        """Whether there is something that could wait until a frame was shown."""
+        """Whether there is work that can wait until a frame is shown."""
         waits = self._to_learn_from is not None or (self._preview is not None and self._preview.has_more)
         return waits and not self._failed
 
     def go_on(self) -> PreviewFailed | None:
-        """Do some of it."""
+        """Do a part of the work that can wait until a frame is shown."""
         picture, self._to_learn_from = self._to_learn_from, None
         try:
             if self._reference is not None and picture is not None:

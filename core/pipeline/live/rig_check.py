@@ -10,7 +10,7 @@ from core.scan.preview.preflight import Check
 
 
 def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | None = None) -> Check:
-    """Whether camera and laser were checked on the day of `now`, which has a time zone, and what came of it.
+    """Make the check whether camera and laser were checked on the day of `now`, which has a time zone.
 
     Planes calibrated in this sitting, so many hours ago, are as good as a check.
     """

@@ -58,29 +58,29 @@ _FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 
 
 class FrameStore(Protocol):
-    """Writes frames without keeping anybody waiting (core.files.recording.recorder.Recorder)."""
+    """Writer of frames that does not block the caller (core.files.recording.recorder.Recorder)."""
 
     @property
     def written(self) -> int:
-        """How many are on the disk."""
+        """Number of frames on the disk."""
 
     @property
     def dropped(self) -> int:
-        """How many were not taken, or given up."""
+        """Number of frames that were refused or given up."""
 
     @property
     def waiting(self) -> int:
-        """How many are taken but not yet on the disk."""
+        """Number of frames accepted but not yet on the disk."""
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
-        """Take a picture, that of a `frame` of the `camera`, to be written; False if the disk is too slow."""
+        """Queue a picture, that of a `frame` of the `camera`, to be written; False if the disk is too slow."""
 
     def close(self) -> None:
         """Wait until all are on the disk."""
 
 
 class LiveScan:
-    """The scan step of a live recording."""
+    """Scan step of a live recording."""
 
     def __init__(self, context: LiveContext, store: FrameStore) -> None:
         self._context, self._store, request = context, store, context.request
@@ -102,11 +102,11 @@ class LiveScan:
 
     @property
     def paired(self) -> bool:
-        """While scanning: a stripe drawn beside its light would look wrong."""
+        """Whether it is scanning: a stripe drawn beside its light would look wrong."""
         return self._stage == "scanning"
 
     def begin(self) -> None:
-        """The lasers as they must be now; the reference, if there is none yet."""
+        """Switch the lasers as they must be now, and take the reference if there is none yet."""
         self._self_switching = self._context.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
         self._before = None
         if self._stage != "reference":
@@ -117,7 +117,7 @@ class LiveScan:
             self._ask_for_reference()
 
     def frame(self, frame: Frame) -> None:
-        """Record the frame, and have it looked at if there is time."""
+        """Record a frame, and have it previewed if there is time."""
         if self._coverage is None:
             height, width = frame.picture.shape
             self._coverage = CoverageMap((width, height))
@@ -132,7 +132,7 @@ class LiveScan:
             self._record(frame)
 
     def poll(self) -> Frame | None:
-        """See what has become of the reference or the frame that was looked at."""
+        """Take the result of a finished look at the reference or a frame."""
         try:
             result = self._context.worker.take()
         except InputError as error:  # the reference shows no fan
@@ -153,12 +153,12 @@ class LiveScan:
         return None
 
     def rest(self) -> None:
-        """After each look a little of what waits is done: not more, so that the next frame finds the worker free."""
+        """Do a little of the waiting work after each look: not more, so that the next frame finds the worker free."""
         if self._looked and self._previewer.has_more and self._context.worker.start(self._previewer.go_on):
             self._looked = False
 
     def detail(self, shown: Frame) -> ScanDetail | None:
-        """The last preview, and all points since the last time this was asked for."""
+        """Return the last preview, and all points since the last call."""
         if self._coverage is None:
             return None
         points, renewed = PreviewCloud.joined(self._new), self._renewed
@@ -176,7 +176,7 @@ class LiveScan:
         )
 
     def tell(self, command: Command) -> None:
-        """TakeReference, Pause, Resume and Mark; and that the source has been told other settings."""
+        """Handle TakeReference, Pause, Resume and Mark, and a change of the source's settings."""
         match command:
             case Configure():
                 self._checks.configured()
@@ -199,7 +199,7 @@ class LiveScan:
                 self._mark(self._newest)
 
     def finish(self) -> None:
-        """Have all frames on the disk, say how many still wait, and count what is there."""
+        """Write all frames to the disk, report how many still wait, and count what is there."""
         waiting, since = self._store.waiting, time.monotonic()
         while waiting and time.monotonic() - since < STUCK_S:
             self._context.emit(LiveSaving(waiting))

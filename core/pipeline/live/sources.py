@@ -28,7 +28,7 @@ from core.simulate.scenario import Scenario
 
 
 def list_sources(kind: str) -> tuple[SourceInfo, ...]:
-    """The sources of a kind that can be chosen now; empty if none is found, or its driver is not installed.
+    """List the sources of a kind that can be chosen now; empty if none is found, or its driver is not installed.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def list_sources(kind: str) -> tuple[SourceInfo, ...]:
 
 
 def missing_driver(kind: str) -> Message | None:
-    """Why sources of a kind cannot be used on this computer, and what to install; None if they can.
+    """Give the reason why sources of a kind cannot be used on this computer, and what to install; None if they can.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def missing_driver(kind: str) -> Message | None:
 
 
 def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
-    """The source of a choice, not opened yet.
+    """Make the source of a choice, not opened yet.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
 
 
 def camera_name(choice: SourceChoice, source: FrameSource) -> str:
-    """What an open camera is known by in the logs of recordings; "" for a replay, whose pictures were taken before.
+    """Return the name of an open camera in the logs of recordings; "" for a replay, whose pictures are older.
 
     Cameras of one name at two computers are two. What lies before the simulated rig is none of its own.
     """
@@ -92,7 +92,7 @@ def _kind(name: str) -> SourceKind:
 
 
 def scenario_of(text: str) -> Scenario:
-    """The scenario a simulated source's id means: TOML, the path of a TOML file, or "" for the sample's object.
+    """Read the scenario of a simulated source's id: TOML, the path of a TOML file, or "" for the sample's object.
 
     Pictures are no larger than the sample's, whatever it says: larger ones are not made in real time.
     """

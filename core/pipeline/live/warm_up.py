@@ -48,7 +48,7 @@ _SWEEPS = 8
 
 
 def exposed(levels: PixelType, light: Array) -> Picture:
-    """The picture of stripes (h, w) of height 1 on a dark ground, with a little noise."""
+    """Make the picture of stripes (h, w) of height 1 on a dark ground, with a little noise."""
     full = float(np.iinfo(levels).max)
     noise = np.random.default_rng(0).normal(0, 0.004, light.shape)
     grey = np.clip(full * (0.04 + 0.5 * light + noise), 0, full)
@@ -57,7 +57,7 @@ def exposed(levels: PixelType, light: Array) -> Picture:
 
 @cache
 def get_ready_for_live(levels: PixelType) -> None:
-    """Have everything there that pictures of these `levels` need; what is there already takes no time.
+    """Compile what pictures of these `levels` need; what is compiled already takes no time.
 
     A plate with a ridge under the fan, and sweeps over it, are looked at.
     """
@@ -94,17 +94,17 @@ Stages = tuple[Callable[[], None], ...]
 
 
 def stages() -> Stages:
-    """What there is to be compiled, each part by itself, none much longer than a minute; the last one remembers it."""
+    """List the parts to be compiled, none much longer than a minute; the last one records that all are done."""
     return (*(stage for share in shares() for stage in share), keep_complete)
 
 
 def ahead() -> tuple[Stages, bool]:
-    """The same, and whether it takes long: it was not done before."""
+    """List the parts to be compiled, and whether that takes long: it was not done before."""
     return stages(), not is_complete()
 
 
 def shares() -> tuple[Stages, Stages]:
-    """The stages in two shares of about the same length, for two processes: they compile little twice."""
+    """Divide the stages into two shares of about the same length, for two processes: they compile little twice."""
     return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface, _whole_numbers)
 
 

@@ -27,7 +27,7 @@ from core.second_process import SecondProcess
 
 
 def accepted_camera(folder: Path, project: Project) -> Camera:
-    """The accepted camera; InputError if there is none, or it is damaged."""
+    """Read the accepted camera; InputError if there is none, or it is damaged."""
     return _accepted(folder, project).camera
 
 
@@ -41,7 +41,7 @@ def _accepted(folder: Path, project: Project) -> CameraCalibration:
 
 
 def find_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews:
-    """Look for the camera target in every picture; InputError if there are none, or they differ.
+    """Look for the camera target in every picture; InputError if there are none, or their sizes differ.
 
     What is found is kept in the project.
     """
@@ -52,17 +52,17 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
 
 
 def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
-    """What `find_views` found in these very pictures the last time, if nothing else has been looked at since."""
+    """Read the views that `find_views` found in these pictures, if it has not searched others since; else None."""
     return kept_views(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
-    """The camera from what the pictures show, without the views left out; InputError if they do not determine it."""
+    """Calibrate the camera from views, without those left out; InputError if they do not determine it."""
     return solve_camera(seen, project.options.for_camera, progress, project.rig.camera_board)
 
 
 def accept_camera(folder: Path, project: Project, calibration: CameraCalibration, progress: Progress = silent) -> str:
-    """Keep a camera's calibration in the project and return its id: the caller makes it the accepted one.
+    """Store a camera's calibration in the project and return its id: the caller makes it the accepted one.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
 def find_poses(
     folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
 ) -> tuple[PoseFeatures, ...]:
-    """Target and stripes in the pictures of every pose; InputError without an accepted camera or without pictures.
+    """Find target and stripes in the pictures of every pose; InputError without an accepted camera or pictures.
 
     What is found is kept in the project. The process `beside` takes some of the poses.
     """
@@ -92,14 +92,14 @@ def find_poses(
 
 
 def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
-    """What `find_poses` found in these very pictures the last time, seen by the accepted camera; else nothing."""
+    """Read the poses that `find_poses` found in these pictures with the accepted camera; else nothing."""
     return kept_poses(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_poses(
     folder: Path, project: Project, poses: Sequence[PoseFeatures], progress: Progress = silent
 ) -> FanCalibration:
-    """The fan, seen through the accepted camera, without the poses left out.
+    """Calibrate the fan with the accepted camera, without the poses left out.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def accept_planes(
     accept_few_poses: bool = False,
     progress: Progress = silent,
 ) -> str:
-    """Keep a fan's calibration in the project and return its id: the caller makes it the accepted one.
+    """Store a fan's calibration in the project and return its id: the caller makes it the accepted one.
 
     With `accept_few_poses` somebody has decided that it may rest on fewer than half of the poses.
 

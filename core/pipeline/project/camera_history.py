@@ -20,7 +20,7 @@ from core.progress import Progress, silent
 
 
 def recall_camera(project_folder: Path, project: Project, progress: Progress = silent) -> RecalledCamera:
-    """Read the accepted calibration of a project, and see whether it is of the project's pictures.
+    """Read the accepted calibration of a project, and check whether it is of the project's pictures.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def recall_camera(project_folder: Path, project: Project, progress: Progress = s
 def compare_stored(
     project_folder: Path, first_id: str, second: CameraCalibration | str, progress: Progress = silent
 ) -> CameraChanges:
-    """What is different in `second`, a calibration or the id of one, against one of the history.
+    """Compare a calibration of the history with `second`, a calibration or the id of one.
 
     Raises
     ------

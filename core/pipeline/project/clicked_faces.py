@@ -37,7 +37,7 @@ def clicked_faces(
     progress: Progress = silent,
     memory: MutableMapping[str, Any] | None = None,
 ) -> ClickedFaces:
-    """The faces that go on from these points.
+    """Find the faces that contain these points.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ from core.scan.surface.coverage_map import CoverageMap
 
 
 def show_frame(folder: Path, project: Project, name: str, progress: Progress = silent) -> FrameStages:
-    """Every stage of one frame ("scan/frame0007.png"), with the accepted calibrations as far as there are any.
+    """Compute every stage of one frame ("scan/frame0007.png"), with the accepted calibrations as far as there are any.
 
     What a measurement of this very recording has settled (the look of the stripes, the numbers of the fan's lines) is
     taken from it.
@@ -57,7 +57,7 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
 def accepted_calibration(
     folder: Path, project: Project, progress: Progress = silent
 ) -> tuple[Camera | None, Fan | None, Taken | None]:
-    """The accepted camera and fan, as far as there are any, and how the fan's pictures were taken, where that is known.
+    """Read the accepted camera and fan, as far as there are any, and how the fan's pictures were taken, if known.
 
     InputError if one is damaged or they are not a pair.
     """
@@ -69,7 +69,7 @@ def accepted_calibration(
 
 
 def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
-    """The scan among the results of the project in `folder`; without points if there is none that can be read."""
+    """Read the scan among the results of the project in `folder`; without points if there is none that can be read."""
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
     features = None if results.cloud is None else read_scan(results.files["scan"]).features
@@ -95,7 +95,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
 def show_pose(
     folder: Path, project: Project, pose: PoseFeatures, fan: Fan | None = None, progress: Progress = silent
 ) -> PoseStages:
-    """The picture of one pose with what was found in it; the lines of its stripes if there is a fan.
+    """Read the picture of one pose with what was found in it; its stripes are numbered if there is a fan.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def show_pose(
 def recall_poses(
     folder: Path, project: Project, progress: Progress = silent
 ) -> tuple[tuple[PoseFeatures, ...], FanCalibration]:
-    """What the poses of the accepted fan showed, and the fan solved from them again, with all its points.
+    """Read the poses of the accepted fan, and solve the fan from them again, with all its points.
 
     The fan is that of the project's settings as they are: the accepted one only if they are the same.
 

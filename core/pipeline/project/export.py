@@ -30,7 +30,7 @@ from core.report.template import ReportTemplate
 
 
 def preview_report(folder: Path, project: Project, width_px: int, progress: Progress = silent) -> Pages:
-    """The pages of the report as they would be now, each (height, `width_px`, 3); the results stay as they are.
+    """Draw the pages of the report as they would be now, each (height, `width_px`, 3); results stay as they are.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def preview_report(folder: Path, project: Project, width_px: int, progress: Prog
 
 
 def choose_template(folder: Path, choices: ReportChoices, path: Path | None) -> ReportChoices:
-    """The choices with the template in `path` (None: without any), and with the paper, language and sections it names.
+    """Set the template in `path` (None: none) in the choices, with the paper, language and sections it names.
 
     What it does not name stays as it is, and everything can be chosen otherwise afterwards.
 
@@ -63,7 +63,7 @@ def choose_template(folder: Path, choices: ReportChoices, path: Path | None) -> 
 
 
 def with_template(content: ReportContent, template: ReportTemplate) -> ReportContent:
-    """The content as a template wants it: its words, and the paper, language and sections it names."""
+    """Apply a template to the content: its words, and the paper, language and sections it names."""
     return replace(
         content,
         template=template,
@@ -194,7 +194,7 @@ def import_camera(path: Path, out: Path) -> CameraCalibration:
 
 
 def keep_imported_camera(folder: Path, project: Project, path: Path) -> str:
-    """Keep a camera calibrated by OpenCV or ROS in the project and return its id; InputError as :func:`import_camera`.
+    """Store a camera calibrated by OpenCV or ROS in the project and return its id; InputError as :func:`import_camera`.
 
     The caller makes it the accepted one.
     """

@@ -45,7 +45,7 @@ def frame_stages(
     progress: Progress = silent,
     settled: SettledScan | None = None,
 ) -> FrameStages:
-    """Look at one frame in every stage. What all frames have in common is kept until another recording is looked at.
+    """Compute one frame at every stage. What all frames have in common is kept until another recording is looked at.
 
     Parameters
     ----------

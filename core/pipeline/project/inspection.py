@@ -65,7 +65,7 @@ def measure_features(
 def look_at_features(
     folder: Path, project: Project, progress: Progress = silent, memory: Memory | None = None
 ) -> ShownInspection:
-    """The same without writing anything: as it was kept, or else measured again, to be drawn."""
+    """Read the measured features to be drawn, or measure them again, without writing anything."""
     progress("features", 0, 1)
     kept = read_shown(results_folder(folder) / FILES["inspection"], plan_tables(project.inspection))
     return kept or _shown(*_inspected(folder, project, progress, memory))

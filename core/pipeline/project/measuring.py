@@ -118,7 +118,7 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
 
 
 def record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
-    """Write into run.json how the calibrations came about, as if they had been made with the scan."""
+    """Write into run.json how the calibrations were made, as if they had been made with the scan."""
     calibration, record = work.calibration(), work.record()
     solved = {"camera": solved_for(calibration.camera)}
     steps = (

@@ -30,7 +30,7 @@ Stamps = dict[str, tuple[int, int]]
 
 @dataclass(frozen=True, eq=False)
 class OpenedProject:
-    """What lies in a project's folder, read when it is asked for; nothing is ever written.
+    """Project opened for reading: files are read when they are needed; nothing is ever written.
 
     What is not there is None, or nothing. Once a file has changed since the project was opened, what was not read
     before raises InputError: so all that is read belongs together.
@@ -46,33 +46,33 @@ class OpenedProject:
 
     @property
     def changed(self) -> bool:
-        """Whether a file has been written, or has gone, since the project was opened."""
+        """Whether a file has been written, or removed, since the project was opened."""
         return _stamps(self.folder) != self._stamps
 
     def opened_again(self) -> OpenedProject:
-        """The project as it lies on the disk now."""
+        """Open the project as it is on the disk now."""
         return open_project(self.folder)
 
     @cached_property
     def results(self) -> ProjectResults:
-        """All that was measured and belongs together, and in `problems` why some of it does not."""
+        """Results that belong together, and in `problems` why others do not."""
         self._require_unchanged()
         return load_results(self.folder)
 
     @cached_property
     def settings(self) -> Project | None:
-        """What was decided in the window: rig, options, plan; None in a folder of results."""
+        """Settings of the project: rig, options, plan; None in a folder of results."""
         file = self._file
         return file.project if file is not None else None
 
     @property
     def camera(self) -> CameraCalibration | None:
-        """The camera with its covariance."""
+        """Camera with its covariance."""
         return self.results.camera
 
     @property
     def planes(self) -> FanCalibration | None:
-        """The fan's light planes with their covariance."""
+        """Light planes of the fan with their covariance."""
         return self.results.fan
 
     @property
@@ -82,29 +82,29 @@ class OpenedProject:
 
     @property
     def mesh(self) -> Mesh | None:
-        """Corners in mm in the camera frame, and triangles."""
+        """Mesh of corners in mm in the camera frame, and triangles."""
         return self.results.mesh
 
     @property
     def gauge(self) -> GaugeResult | None:
-        """The thickness with its budget."""
+        """Thickness with its budget."""
         return self.results.gauge
 
     @cached_property
     def inspection(self) -> InspectionFile | None:
-        """What the plan's features gave."""
+        """Results of the plan's features."""
         self._require_unchanged()
         path = results_in(self.folder) / FILES["inspection"]
         return read_inspection(path) if path.exists() else None
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Every value with U and verdict, the worst first; nothing without a scan."""
+        """Values with U and verdict, the worst first; empty without a scan."""
         return self._listed.worst_first
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict on the part, of all of them together."""
+        """Verdict on the part, from all its characteristics."""
         return self._listed.verdict
 
     @cached_property
@@ -127,7 +127,7 @@ class OpenedProject:
 
 
 def open_project(path: str | Path) -> OpenedProject:
-    """Open a project, or a folder of results, to be read.
+    """Open a project, or a folder of results, for reading.
 
     Parameters
     ----------

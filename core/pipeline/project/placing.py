@@ -24,7 +24,7 @@ WIDTH_PX = 640
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Placing:
-    """Where a part lay.
+    """Place of a part in the picture.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Placing:
 
 
 def placing(folder: Path, project: Project, progress: Progress = silent) -> Placing | None:
-    """Where the part of a project lay; None where no thickness was measured or there is no reference picture.
+    """Determine where the part of a project lay; None without a measured thickness or a reference picture.
 
     Raises
     ------

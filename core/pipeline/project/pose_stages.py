@@ -26,7 +26,8 @@ def pose_stages(
     progress: Progress = silent,
     stripe: StripeSettings | None = None,
 ) -> PoseStages:
-    """Look at one pose; without a fan its stripes have no numbers yet. `stripe` is what was looked for, if given.
+    """Compute the stages of one pose; without a fan its stripes have no numbers yet. `stripe` is what was looked for,
+    if given.
 
     Raises
     ------

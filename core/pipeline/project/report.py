@@ -26,7 +26,7 @@ from core.second_process import SecondProcess
 def make_report(
     folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
 ) -> Path:
-    """Put the results into report.pdf, with what the project says of the job; returns its path.
+    """Write the results into report.pdf, with the project's data of the job; returns its path.
 
     The process `beside` draws it, if there is one.
 
@@ -41,19 +41,19 @@ def make_report(
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
-    """The report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
+    """Make the report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
     return build_report(project_content(folder, project, progress), progress)
 
 
 def project_content(folder: Path, project: Project, progress: Progress = silent) -> ReportContent:
-    """All that is reported and handed over of a project; InputError if there is no scan among the results."""
+    """Collect all that is reported and exported of a project; InputError if there is no scan among the results."""
     work = Workspace(project_set(folder, project), results_folder(folder), part_name(project))  # only read from
     pictures = PictureReader(work.recording_set)
     return report_content(work, pictures, progress, lambda content: with_words(content, folder, project))
 
 
 def with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
-    """The report's content with what people say of the job and of the report.
+    """Add the user's texts on job and report to the report's content.
 
     Raises
     ------

@@ -29,7 +29,7 @@ _PARTS = 6
 
 
 def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
-    """Read what lies among the results of the project in `folder`, which may be a folder of results itself.
+    """Read the results of the project in `folder`, which may be a folder of results itself.
 
     What is missing is None. What is damaged or was measured with another calibration is None, too, and a sentence says
     so; nothing is raised for it.

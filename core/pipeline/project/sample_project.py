@@ -59,12 +59,12 @@ def sample_to_measure(speaks: str = "en", progress: Progress = silent) -> Projec
 
 
 def clear_unfinished(folder: Path) -> None:
-    """Remove what is left of a sample project that was being made in `folder` by a process that has been ended."""
+    """Remove the remains of a sample project in `folder` whose process has been ended."""
     remove_leftovers(folder, quiet_s=0.0)
 
 
 def finished_project(folder: Path, project: Project, progress: Progress = silent) -> ProjectFile:
-    """Do every step of a project, accepting each calibration.
+    """Do every step of a project, and accept each calibration.
 
     Raises
     ------

@@ -69,7 +69,7 @@ def write_script(folder: Path, path: Path, language: str = "en") -> Path:
 
 
 def script_text(folder: Path, words: Words) -> str:
-    """The text of the script; InputError if nothing has been measured, or a file of the project is damaged."""
+    """Make the text of the script; InputError if nothing has been measured, or a file of the project is damaged."""
     file, results = _with_whole_paths(folder, read_project(folder)), results_folder(folder)
     if not (results / FILES["run"]).exists():
         raise InputError(

@@ -25,7 +25,7 @@ LEAST_CONTRAST = 16.0
 def display_picture(
     path: Path, channel: Channel | None, width_px: int, mosaic: Pattern | None = None, progress: Progress = silent
 ) -> tuple[Thumbnail, int]:
-    """A picture in 8 bit, reduced by a whole factor to at most `width_px` across, and the factor.
+    """Read a picture in 8 bit, reduced by a whole factor to at most `width_px` across, and return the factor too.
 
     Raw pictures of a `mosaic` are shown in the `channel`, without the checkerboard they are.
 
@@ -46,7 +46,7 @@ def thumbnails(
     *,
     of_stripes: bool = False,
 ) -> tuple[Thumbnail | None, ...]:
-    """A small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read.
+    """Make a small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read.
 
     As `display_picture` shows it. With `of_stripes` they are brightened until the stripes of light are, which a small
     picture makes faint.
@@ -72,12 +72,12 @@ def stripe_thumbnails(
     mosaic: Pattern | None = None,
     progress: Progress = silent,
 ) -> tuple[Thumbnail | None, ...]:
-    """Small pictures of the frames of a scan: as `thumbnails`, with stripes that can be seen."""
+    """Make small pictures of the frames of a scan, as `thumbnails`, with visible stripes."""
     return thumbnails(paths, channel, mosaic, progress=progress, of_stripes=True)
 
 
 def brightened(picture: Thumbnail) -> Thumbnail:
-    """The picture from its background, black, to its stripes, white; noise alone is left dark."""
+    """Stretch the picture from its background, black, to its stripes, white; noise alone is left dark."""
     background, stripes = np.percentile(picture, (5.0, 99.8))
     grey = (picture - background) * (255.0 / max(stripes - background, LEAST_CONTRAST))
     return np.asarray(np.clip(grey, 0, 255), np.uint8)

@@ -30,7 +30,7 @@ CHANGING = ".results-changing"
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """What was found: the audit trail, how many files were compared, what differs, and what else is to be told."""
+    """Result of verifying a project: the audit trail, how many files were compared, what differs, and notes."""
 
     trail: Trail
     results: int
@@ -41,7 +41,7 @@ class Verified:
 
 @contextmanager
 def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
-    """Tell the project's audit trail what lies among its results once the block has made or changed them.
+    """Note the project's results in its audit trail once the block has made or changed them.
 
     A block that fails has its entry where it changed something all the same. Should the program end before the entry
     is written, a mark beside the results says so: `verify` then does not call good results changed.
@@ -66,7 +66,7 @@ def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
 
 
 def note_results(folder: Path, *, reported: bool = False) -> None:
-    """Tell the project's audit trail what lies among its results now; raises as `append`."""
+    """Note the project's results of now in its audit trail; raises as `append`."""
     append(folder, "reported" if reported else "measured", files=_hashes(folder))
 
 
@@ -75,7 +75,7 @@ def _hashes(folder: Path) -> dict[str, str]:
 
 
 def verify(folder: Path, set_folder: Path | None = None, head: str = "", progress: Progress = silent) -> Verified:
-    """Compare everything that has a hash with what lies on the disk.
+    """Compare everything that has a hash with the files on the disk.
 
     Parameters
     ----------

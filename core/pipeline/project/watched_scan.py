@@ -24,7 +24,7 @@ Watch = Callable[[ScanDetail], None]
 def measure_watched(
     folder: Path, project: Project, progress: Progress = silent, watch: Watch | None = None
 ) -> ScanSummary:
-    """Measure as `measure_scan`; `watch` is told of each frame in the order of the recording, on this thread.
+    """Measure as `measure_scan`; `watch` is called for each frame in the order of the recording, on this thread.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def measure_watched(
 
 
 class WatchReporter:
-    """Puts together what the frames show, one after another, and tells `watch` of it."""
+    """Reporter that accumulates the features of frames, one after another, and calls `watch` with them."""
 
     def __init__(self, image_size: tuple[int, int], watch: Watch) -> None:
         self._watch, self._coverage = watch, CoverageMap(image_size)

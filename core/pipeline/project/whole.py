@@ -46,7 +46,7 @@ SHARED = {"planes", "scan"}
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Where the whole job stopped: the page where a person has to decide or to mend something, and why."""
+    """Reason why the whole job stopped, and the page where the user has to decide or to repair something."""
 
     page: str
     why: Message
@@ -54,7 +54,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class WholeJob:
-    """What came of it: the project with what is accepted now and all results, and where it stopped, if it did."""
+    """Result of the whole job: the project with its accepted calibrations and results, and where it stopped, if so."""
 
     file: ProjectFile
     stop: Stop | None

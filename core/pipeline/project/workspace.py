@@ -19,7 +19,7 @@ from core.pipeline.steps.workspace import Workspace
 
 
 def project_set(folder: Path, project: Project) -> RecordingSet:
-    """The pictures of a project as one recording set, with the names they would have in one.
+    """Make one recording set of the pictures of a project, with the names they would have in one.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 
 def rig_in_its_air(project: Project) -> Rig:
-    """The project's rig, as warm as the air is stated to be, where that says how far it may have changed."""
+    """Set the temperatures of the project's rig to that of the air, where the drift per kelvin is stated."""
     rig, celsius = project.rig, project.info.air_celsius
     air = rig.air
     if air.calibrated is None and rig.drift == NO_DRIFT:
@@ -43,10 +43,10 @@ def rig_in_its_air(project: Project) -> Rig:
 
 
 def part_name(project: Project) -> str:
-    """The part's name; the project's name where none is given."""
+    """Return the part's name; the project's name where none is given."""
     return project.info.part or project.options.part or project.info.name
 
 
 def project_workspace(folder: Path, project: Project) -> Workspace:
-    """The project's pictures and results, to be worked on; InputError as `project_set` and `Workspace.open` say."""
+    """Make the workspace of a project's pictures and results; InputError as `project_set` and `Workspace.open`."""
     return Workspace.open(project_set(folder, project), make_inner_folder(folder, RESULTS), part_name(project))

@@ -31,7 +31,7 @@ def read_positions(
     folders: Sequence[Path], artefact: Artefact, *, calibrated_mm: float = 0.0, u_mm: float = 0.0,
     diameter_mm: float = 0.0, progress: Progress = silent,
 ) -> tuple[Reading, ...]:  # fmt: skip
-    """Form and size of the sphere, spacing of the two of a bar, or flatness of the largest plane of each cloud.
+    """Read form and size of the sphere, spacing of a bar's two, or flatness of the largest plane, of each cloud.
 
     Each has the doubts of its scan; of a cloud without a scan.npz nothing is known.
 

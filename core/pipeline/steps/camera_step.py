@@ -69,7 +69,7 @@ def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
 
 
 def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews:
-    """Look for the target in every view, a few pictures at a time.
+    """Find the target in every view, a few pictures at a time.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def solve_camera(
     progress: Progress = silent,
     tolerance: BoardTolerance | None = None,
 ) -> CameraCalibration:
-    """The camera from what the pictures show, without those left out by hand: they are judged by the solution.
+    """Calibrate the camera from views, without those left out by hand, which are judged by the solution.
 
     `tolerance` is what is known of how true the target is.
 

@@ -182,12 +182,12 @@ class _OfStep(NamedTuple):
 
 
 def check_paths(recording_set: RecordingSet) -> list[Path]:
-    """The pictures of the check."""
+    """List the pictures of the check."""
     return recording_set.pictures_of(recording_set.check)
 
 
 def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSet:
-    """The set without those pictures of its check by which camera and fan were re-adjusted: what they know is in these.
+    """Remove from the set the pictures of its check by which camera and fan were re-adjusted: they are used up.
 
     The same pictures are known by what is in them.
     """
@@ -218,7 +218,7 @@ def since_calibration(
     scanned: Taken | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
 ) -> Change:
-    """What may have changed since the calibration, as far as no picture excludes it.
+    """Estimate what may have changed since the calibration, as far as no picture excludes it.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def checked_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> bool
 def charted_spread(
     recording_set: RecordingSet, calibration: Calibration, when: datetime | None = None
 ) -> RigSpread | None:
-    """How much the rig changes, by the history of its checks before `when`; None where it does not say.
+    """Estimate how much the rig changes from the history of its checks before `when`; None without information.
 
     Without `when` it is for the scan's frames, and None where there are none.
     """
@@ -292,7 +292,7 @@ def charted_spread(
 
 
 class Judged(NamedTuple):
-    """What the pictures of a set prove of the rig since its calibration."""
+    """Judgement of the rig since its calibration by the pictures of a set."""
 
     deviations: tuple[Deviation, ...]
     """Those that are reckoned with."""
@@ -312,7 +312,7 @@ def judged(
     at_scan: bool = False,
     scanned: Taken | None = None,
 ) -> Judged:
-    """What the pictures of a set, and the poses of its interim `check` if it has one, prove of the rig.
+    """Judge the rig by the pictures of a set and the poses of its interim `check`.
 
     When its check was taken, or `at_scan`; by which camera and when that was is `scanned`, None where it is not known.
     """
@@ -356,7 +356,7 @@ def judged(
 
 
 def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
-    """Notes on what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
+    """Note what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
     if change.sitting_hours is not None:
         kelvins = notes_since_check(recording_set.rig)
         return (note_of("scan.calibrated_in_this_sitting", hours=change.sitting_hours), *kelvins)
@@ -385,7 +385,7 @@ def check_of_the_day(
     progress: Progress = silent,
     kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Target and stripes of the poses of the interim check, () where it says nothing of the day of the scan.
+    """Measure the poses of the interim check; () where it does not apply to the day of the scan.
 
     They are looked for in the folder `kept` first, as by `measure_check`.
 
@@ -408,7 +408,7 @@ def measure_check(
     beside: SecondProcess | None = None,
     kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Target and stripes of every pose of the interim check; the process `beside` takes some of them.
+    """Find target and stripes in every pose of the interim check; the process `beside` takes a share.
 
     Those in the folder `kept` are taken if they are of these very pictures; else they are kept there.
 

@@ -43,7 +43,7 @@ LEAST_PART = 0.05
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Compared:
-    """A comparison, what it came to in short, and the other surface's points (M, 3) in the frame of the scan."""
+    """Comparison, its summary, and the other surface's points (M, 3) in the frame of the scan."""
 
     comparison: Comparison
     summary: ComparisonFile
@@ -119,7 +119,7 @@ def compare_step(
     to: Path | None = None,
     progress: Progress = silent,
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare, and write the comparison among the results of `source`, or into `to`; the files by their keys.
+    """Compare, and write the comparison among the results of `source`, or into `to`; returns the files by their keys.
 
     Raises
     ------

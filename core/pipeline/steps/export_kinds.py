@@ -36,7 +36,7 @@ from core.report.content import ReportContent
 
 
 def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
-    """The frame that the geometry among `results` is handed over in: the part's own where it is known and wanted.
+    """Choose the frame in which the geometry among `results` is exported: the part's own where it is known and wanted.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
 
 
 class Results:
-    """A folder of results, and what is said of them; read when it is asked for.
+    """Folder of results, with the user's texts; files are read when they are needed.
 
     Parameters
     ----------
@@ -69,22 +69,22 @@ class Results:
 
     @cached_property
     def frame(self) -> ViewFrame:
-        """The frame that geometry is written in; InputError if what says how the part lies is damaged."""
+        """Frame in which geometry is written; InputError if the file with the part's pose is damaged."""
         return frame_of(self.folder, in_camera_frame=self._in_camera_frame)
 
     @cached_property
     def content(self) -> ReportContent:
-        """All that is reported; InputError if there is no scan among the results."""
+        """Content of the report; InputError if there is no scan among the results."""
         return self._content()
 
     @property
     def camera(self) -> CameraCalibration:
-        """The camera's calibration; InputError if there is none."""
+        """Camera's calibration; InputError if there is none."""
         return read_camera(self.folder / FILES["camera"])
 
     @property
     def camera_time(self) -> datetime:
-        """When the camera was calibrated, or else when anything was last measured with it."""
+        """Time when the camera was calibrated, or else when anything was last measured with it."""
         record = read_run(self.folder / FILES["run"])
         return record.made_at.get("camera", record.measured_at)
 
@@ -222,7 +222,7 @@ WRITERS: Mapping[str, Write] = {
 
 
 def export_kind(name: str) -> ExportKind:
-    """The kind of that name; InputError that names all kinds if there is none."""
+    """Find the kind of that name; InputError that names all kinds if there is none."""
     if name not in EXPORTS:
         raise InputError(
             Message("export.no_such_format", 'there is no format "{name}"', name=name),
@@ -233,5 +233,5 @@ def export_kind(name: str) -> ExportKind:
 
 
 def write_export(kind: str, results: Results, path: Path, progress: Progress = silent) -> None:
-    """Write the kind of that name to `path`; InputError if there is none, or a result is missing."""
+    """Write the export of that kind to `path`; InputError if there is none, or a result is missing."""
     WRITERS[export_kind(kind).name](results, path, progress)

@@ -92,7 +92,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 
 
 def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
-    """The thickness at 20 °C, by what is stated or assumed of the part's temperature, and notes on what is assumed."""
+    """Correct the thickness to 20 °C, by the stated or assumed temperature of the part, and note what is assumed."""
     temperature = temperature_of(part)
     if temperature is not None:
         gauge = adjusted(gauge, *correction_to_reference(gauge.thickness_mm, temperature))
@@ -101,7 +101,7 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
 
 
 def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
-    """A note on a rig that was not checked on the day, if U is much the larger by what may have changed."""
+    """Note that the rig was not checked on the day, if U is much larger by what may have changed."""
     change = max((row.u_mm for row in gauge.budget if row.source in CHANGES), default=0.0)
     if MATTERS**2 * (gauge.u_mm**2 - change**2) >= gauge.u_mm**2:
         return ()
@@ -119,7 +119,10 @@ def _no_thickness() -> Iterator[None]:
 
 @contextmanager
 def one_face_seen(scan: ScanFile, cloud: Cloud) -> Iterator[None]:
-    """That only one face is in view is its own cause if the `cloud` has enough of what the fan saw."""
+    """Name, for an error in this block, one face only in view as the cause.
+
+    If `cloud` has enough of the fan's light.
+    """
     try:
         yield
     except OneFace as error:
@@ -130,7 +133,7 @@ def one_face_seen(scan: ScanFile, cloud: Cloud) -> Iterator[None]:
 
 
 def reasons_of_no_faces(scan: ScanFile, cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
-    """All that may be why no faces are found in the `cloud`: one row for each cause that holds.
+    """Yield the possible reasons why no faces are found in the `cloud`: one row for each cause that holds.
 
     `bends` (N, 3, 3) in 1/mm are those of the fan's lines, None where they are not known.
     """
@@ -242,25 +245,25 @@ def _unsure(scan: ScanFile) -> Iterator[Reason]:
 
 
 def point_errors(scan: ScanFile) -> PointErrors:
-    """How the errors of a scan's points hang together."""
+    """Make the correlated errors of a scan's points."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
     return replace(errors, facts=scan.facts, light=scan.part_light)
 
 
 class Thickness(NamedTuple):
-    """What looking for a thickness came to: the gauge, or what is in its way."""
+    """Result of looking for a thickness: the gauge, or the reason why there is none."""
 
     gauge: GaugeResult | None
     problem: InputError | None = None
 
     @property
     def note(self) -> Message | None:
-        """Why there is none."""
+        """Note on why there is no thickness; None if there is."""
         return None if self.problem is None else note_of("gauge.none_measured", reason=self.problem.message)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness:
-    """As `gauge_step`, but nothing is raised where there is no thickness: run.json says why."""
+    """Measure the thickness as `gauge_step`; where there is none, write the reason to run.json and raise nothing."""
     try:
         return Thickness(gauge_step(work, progress))
     except InputError as error:
@@ -272,7 +275,7 @@ def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness
 
 
 def missing_thickness(rig: Rig, why_not: Why | None) -> Why | None:
-    """What ends a job: why a thickness that the rig asks for was not found; None if none is asked for, or it was."""
+    """Give the reason why a thickness that the rig asks for was not found; None if none is asked for, or it was."""
     return None if rig.gauge is None else why_not
 
 

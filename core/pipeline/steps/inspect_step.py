@@ -31,7 +31,7 @@ from core.scan.surface.fused_surface import Mesh
 
 @dataclass(frozen=True, eq=False, slots=True)
 class InspectedScan:
-    """What a plan is measured on.
+    """Scan on which a plan is measured.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class InspectedScan:
 
 
 def open_scan(source: Path, results: Path | None = None) -> InspectedScan:
-    """The scan to be inspected.
+    """Read the scan to be inspected.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def inspect(
     progress: Progress = silent,
     previous: Inspection | None = None,
 ) -> Inspection:
-    """Measure a plan on a scan; `nominals` is the folder that names of nominal surfaces are of.
+    """Measure a plan on a scan; `nominals` is the folder of the nominal surfaces.
 
     Raises
     ------

@@ -43,7 +43,7 @@ def kept_features(
     camera: Camera,
     progress: Progress = silent,
 ) -> ScanFeatures | None:
-    """The features that were kept of these pictures, settings and camera: by an earlier scan.npz, or by the recording.
+    """Read the stored features of these pictures, settings and camera, from an earlier scan.npz or the recording.
 
     Takes the hashes of the pictures, as reading them would, if features were kept.
     """
@@ -64,7 +64,7 @@ def _features_in(path: Path, key: str) -> ScanFeatures | None:
 
 
 def keep_features(pictures: PictureReader, settings: Options, camera: Camera, features: ScanFeatures) -> None:
-    """Keep the features of a recording beside its frames; the hashes of its pictures must have been taken.
+    """Store the features of a recording beside its frames; the hashes of its pictures must have been taken.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def keep_features(pictures: PictureReader, settings: Options, camera: Camera, fe
 
 
 def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> str:
-    """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
+    """Compute the key of all that the features of a scan rest on, in 16 hex digits; hashes must have been taken.
 
     The camera's distortion is one of it: centrelines are crossed without it.
     """
@@ -104,14 +104,14 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 
 
 def keep_views(project_folder: Path, project: Project, pictures: PictureReader, seen: SeenViews) -> None:
-    """Keep what the pictures of the camera's target showed; in a folder that cannot be written to, it is not kept."""
+    """Store the views found in the pictures of the camera's target; skipped in a folder that cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
         write_views(_path(project_folder, "camera"), _views_key(project, pictures), seen)
 
 
 def kept_views(project_folder: Path, project: Project, pictures: PictureReader, progress: Progress) -> SeenViews | None:
-    """What was kept, if it is of these very pictures and this target."""
+    """Read the stored views, if they are of these pictures and this target."""
     pictures.take_hashes(pictures.recording_set.camera, progress)
     try:
         return read_views(_path(project_folder, "camera"), _views_key(project, pictures))
@@ -120,7 +120,7 @@ def kept_views(project_folder: Path, project: Project, pictures: PictureReader, 
 
 
 def keep_poses(project_folder: Path, project: Project, pictures: PictureReader, poses: Sequence[PoseFeatures]) -> None:
-    """Keep what the pictures of the plate showed; in a folder that cannot be written to, it is not kept."""
+    """Store the poses found in the pictures of the plate; skipped in a folder that cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
         write_poses(_path(project_folder, "planes"), _poses_key(project, pictures), poses)
@@ -129,7 +129,7 @@ def keep_poses(project_folder: Path, project: Project, pictures: PictureReader, 
 def kept_poses(
     project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
 ) -> tuple[PoseFeatures, ...]:
-    """What was kept, if it is of these very pictures, this plate and this camera; else nothing."""
+    """Read the stored poses, if they are of these pictures, this plate and this camera; else nothing."""
     pictures.take_hashes(_pose_pictures(pictures.recording_set), progress)
     try:
         return read_poses(_path(project_folder, "planes"), _poses_key(project, pictures))
@@ -145,7 +145,7 @@ def poses_once(
     measure: Callable[[], tuple[PoseFeatures, ...]],
     progress: Progress = silent,
 ) -> tuple[PoseFeatures, ...]:
-    """What the plate's pictures of an interim check showed, kept in a `folder`; measured and kept where it is not.
+    """Read the stored poses of an interim check in `folder`, or measure and store them.
 
     `measure` has the `camera` and the `stripe` as well. In a folder that cannot be written to, it is not kept.
     """

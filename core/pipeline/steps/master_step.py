@@ -18,7 +18,7 @@ from core.progress import Progress, silent
 def measured_master(
     folder: Path, certified_mm: float | None, project: Path | None = None, progress: Progress = silent
 ) -> Master:
-    """What was measured of a master, as the length nearest to its certified one, with its budget and its doubts.
+    """Read the measured length of a master that is nearest to its certified one, with its budget and its doubts.
 
     Parameters
     ----------

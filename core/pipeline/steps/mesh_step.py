@@ -32,7 +32,10 @@ FORMATS = tuple(_WRITE)
 
 @dataclass(frozen=True, slots=True)
 class MeshOptions:
-    """What is done to the mesh: `fill_mm` fills holes up to that span; `triangles` or `error_mm` decimate; 0: not."""
+    """Options of preparing a mesh: `fill_mm` fills holes up to that span; `triangles` or `error_mm` decimate.
+
+    0: not.
+    """
 
     fill_mm: float = 0.0
     triangles: int = 0
@@ -40,7 +43,7 @@ class MeshOptions:
 
 
 def prepared_mesh(mesh: Mesh, options: MeshOptions, progress: Progress = silent) -> Decimated:
-    """The mesh after all that is asked for, with the error that decimation made.
+    """Prepare the mesh by these options, with the error that decimation made.
 
     Raises
     ------

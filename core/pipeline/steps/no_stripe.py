@@ -22,7 +22,7 @@ from core.pipeline.steps.workspace import RIDGES, Workspace
 def ridge_of(
     pictures: PictureReader, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
 ) -> NDArray[np.uint8] | None:
-    """How strongly each pixel (H, W) of a pose without a straight stripe looks like `stripe`, the strongest white.
+    """Draw the ridge strength (H, W) for `stripe` of a pose without a straight stripe, the strongest white.
 
     None where one was found, or no target.
 
@@ -46,7 +46,7 @@ def write_ridges(
     camera: Camera,
     stripe: StripeSettings | None,
 ) -> Message | None:
-    """Write these pictures into the folder RIDGES of the results, in place of older ones; a note that tells of them.
+    """Write these pictures into the folder RIDGES of the results, in place of older ones; returns a note on them.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def write_ridges(
 
 
 def also_look_at_ridges(error: InputError) -> InputError:
-    """The error that ended a calibration, with the pictures that were written among what to do."""
+    """Add to the error that ended a calibration the advice to look at the pictures written."""
     todo = Message(
         "advice.look_at_ridges",
         "look at the pictures in {folder}, where what looks most like a stripe is white; {advice}",

@@ -86,7 +86,7 @@ def planes_step(
 
 
 def check_agreement(calibration: FanCalibration, decided: bool) -> None:
-    """InputError if the planes rest on a minority of the poses, unless it was `decided` that they may."""
+    """Raise InputError if the planes rest on a minority of the poses, unless it was `decided` that they may."""
     if calibration.minority is not None and not decided:
         raise InputError(
             calibration.minority,
@@ -106,7 +106,7 @@ def measure_poses(
     stripe: StripeSettings | None = None,
     beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Target and stripes of every pose, a few poses at a time; stripes of this width and contrast if they are given.
+    """Find target and stripes in every pose, a few at a time; stripes of this width and contrast if they are stated.
 
     The process `beside` takes some of them.
 
@@ -229,7 +229,7 @@ def solve_planes(
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
 ) -> FanCalibration:
-    """The fan from what the pictures of all poses show, without those left out by hand.
+    """Calibrate the fan from all poses, without those left out by hand.
 
     The camera's `calibration` is needed where the settings have the camera adjusted; without it, it is not. What it
     says of the shape of a target that both steps use holds here as well.
@@ -249,20 +249,20 @@ def solve_planes(
 
 
 def when_taken(calibration: FanCalibration, recording_set: RecordingSet) -> FanCalibration:
-    """The calibration with what the log of its pictures says: by which camera and when they were taken."""
+    """Add to the calibration by which camera and when its pictures were taken, according to their log."""
     log = recording_set.log("planes")
     taken = log.taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
     return replace(calibration, taken=taken, notes=(*calibration.notes, *log.notes))
 
 
 def fan_options(rig: Rig, settings: Options) -> FanOptions:
-    """What is known of the laser, and whether its planes may be held to one pencil."""
+    """Make the options of the fan's calibration, from the rig and whether its planes may be held to one pencil."""
     constrained: Constrained = "auto" if settings.constrain_fan else "never"
     return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
 def planes_told(rig: Rig, settings: Options) -> dict[str, object]:
-    """What the fan's calibration is told, for run.json."""
+    """Make the settings of the fan's calibration for run.json."""
     fan = fan_options(rig, settings)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}

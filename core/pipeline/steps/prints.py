@@ -15,7 +15,7 @@ from core.report.template import Paper
 def write_target_sheet(
     path: Path, target: Target, paper: SheetPaper = "A4", title: str = "", progress: Progress = silent
 ) -> Path:
-    """Write `target` to scale on one page, and return where.
+    """Write a sheet with `target` to scale on one page, and return its path.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def write_target_sheet(
 
 
 def write_quick_card(path: Path, language: str = "en", paper: Paper = "A4") -> Path:
-    """Write the page to hang beside the rig, and return where.
+    """Write the page to hang beside the rig, and return its path.
 
     Raises
     ------

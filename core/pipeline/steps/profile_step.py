@@ -48,7 +48,7 @@ _REPLACED = ("cloud", "scan", "mesh", "report", *resting_on("cloud"))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MeasuredProfiles:
-    """What the step gives in memory; the same is in its files."""
+    """Results of the profile step in memory; the same is in its files."""
 
     gauge: GaugeResult
     pictures: tuple[PictureStep, ...]

@@ -38,7 +38,7 @@ def propose_readjustment(
     progress: Progress = silent,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> ProposedReadjustment:
-    """Work out how camera and fan would be re-adjusted by the pictures of the check; nothing is written.
+    """Compute how camera and fan would be re-adjusted by the pictures of the check; nothing is written.
 
     `stripe` and `poses` are as `core.pipeline.steps.check_step.check_step` has them.
 

@@ -85,7 +85,7 @@ Said = Callable[[ReportContent], ReportContent]
 def report_step(
     work: Workspace, progress: Progress = silent, said: Said | None = None, beside: SecondProcess | None = None
 ) -> Path:
-    """Put the results in the folder into report.pdf; `said` adds what people say to what was measured.
+    """Write the results in the folder into report.pdf; `said` adds the user's texts.
 
     The process `beside` draws it, if there is one.
 
@@ -105,14 +105,14 @@ def report_step(
 
 
 def prepare_report(_: object, /, *, progress: Progress = silent) -> None:
-    """Make ready what draws and typesets a report, for a process that has nothing else to do meanwhile."""
+    """Import what draws and typesets a report, for a process that has nothing else to do meanwhile."""
     from core.report.pdf import prepare
 
     prepare()
 
 
 def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> bytes:
-    """The report as a PDF; what draws and typesets it is imported for it alone."""
+    """Draw the report as a PDF; what draws and typesets it is imported for it alone."""
     from core.report.pdf import build_report
 
     return build_report(content, progress)
@@ -121,7 +121,7 @@ def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> by
 def report_content(
     work: Workspace, pictures: PictureReader, progress: Progress = silent, said: Said | None = None
 ) -> ReportContent:
-    """What the report says; InputError as `report_step`."""
+    """Collect the content of the report; InputError as `report_step`."""
     progress("report", 0, 1)
     content = results_content(work.out, work.part, work.record())
     rig = work.recording_set.rig
@@ -156,7 +156,7 @@ def _artefacts(work: Workspace) -> tuple[ArtefactCheck, ...]:
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
-    """What the results in the folder `out` say by themselves, without the pictures and the rig they come from.
+    """Collect the content of the results in the folder `out`, without the pictures and the rig they come from.
 
     `record` is what is known of the run; None: what run.json says.
 
@@ -336,7 +336,7 @@ _AGAIN = Message(
 
 
 def with_inspection(content: ReportContent, out: Path) -> ReportContent:
-    """The content with every characteristic of inspection.json in `out`, if there is one.
+    """Add every characteristic of inspection.json in `out` to the content, if there is one.
 
     Raises
     ------
@@ -382,7 +382,7 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
-    """The content with the studies in `paths`, each a study.json or its folder; InputError if one cannot be read."""
+    """Add the studies in `paths` to the content, each a study.json or its folder; InputError if one cannot be read."""
     read = tuple(read_study(path / STUDY if path.is_dir() else path) for path in paths)
     return replace(content, studies=(*content.studies, *read)) if read else content
 

@@ -20,7 +20,7 @@ _HOUR = timedelta(hours=1)
 
 
 class StatedChange(NamedTuple):
-    """How far a rig may have changed since its calibration."""
+    """Stability of a rig since its calibration, as stated or assumed."""
 
     stability: Stability | None
     """None: nothing is stated, and the default will do."""
@@ -31,16 +31,16 @@ class StatedChange(NamedTuple):
 
     @property
     def known(self) -> Stability | None:
-        """The stability, where nothing of it is assumed."""
+        """Stability, where nothing of it is assumed; else None."""
         return None if self.assumed else self.stability
 
     @property
     def guess(self) -> Stability:
-        """The stability to begin with where something is assumed."""
+        """Stability to begin with where something is assumed."""
         return self.stability if self.assumed and self.stability is not None else DEFAULT_STABILITY
 
     def notes(self, rig: Rig, stability: Stability) -> tuple[Message, ...]:
-        """What is assumed of the rig, its temperatures and times, if the `stability` was reckoned with in the end."""
+        """Note what is assumed of the rig, its temperatures and times, if the `stability` was used in the end."""
         if self.since is None or (rig.drift == NO_DRIFT and rig.stability is not None):
             return ()
         if rig.drift == NO_DRIFT:
@@ -50,13 +50,13 @@ class StatedChange(NamedTuple):
 
 
 def change_at_scan(recording_set: RecordingSet, fan: FanCalibration) -> StatedChange:
-    """Until the frames were recorded."""
+    """Compute the stated change from the calibration until the frames were recorded."""
     when = taken_at(recording_set.frames) if recording_set.frames else None
     return _since_calibration(recording_set, recording_set.rig.air.scanned, when, fan)
 
 
 class Sitting(NamedTuple):
-    """Planes that were calibrated in the sitting of the scan."""
+    """Sitting in which planes were calibrated and the scan recorded."""
 
     hours: float
     """From the first picture of the planes to the last frame."""
@@ -65,7 +65,7 @@ class Sitting(NamedTuple):
 
 
 def sitting_of(rig: Rig, fan: FanCalibration, scanned: Taken | None) -> Sitting | None:
-    """The sitting in which planes were calibrated and frames recorded; None where that is not one, or not known.
+    """Find the sitting in which planes were calibrated and frames recorded; None where it is not one, or not known.
 
     What had changed before is in the planes' own pictures, as it is in those of a check of the day. `scanned` says by
     which camera and when the frames were taken.
@@ -78,19 +78,19 @@ def sitting_of(rig: Rig, fan: FanCalibration, scanned: Taken | None) -> Sitting 
 
 
 def change_at_check(recording_set: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:
-    """Until the pictures of a check were taken."""
+    """Compute the stated change from the calibration until the pictures of a check were taken."""
     return _since_calibration(recording_set, recording_set.rig.air.checked, when, fan)
 
 
 def change_since_check(recording_set: RecordingSet, checked: datetime) -> Stability:
-    """Between the pictures of a check of the day and the frames; nothing where nothing is stated of warmth and time."""
+    """Compute the change from a check of the day to the frames; 0 where no drift is stated."""
     air = recording_set.rig.air
     hours = 0.0 if not recording_set.frames else (taken_at(recording_set.frames) - checked) / _HOUR
     return recording_set.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
 
 
 def notes_since_check(rig: Rig) -> tuple[Message, ...]:
-    """A note if it is assumed how much warmer it has become between a check of the day and the scan, and matters."""
+    """Note if the warming between a check of the day and the scan is assumed, and matters."""
     known = rig.air.checked is not None and rig.air.scanned is not None
     if known or not rig.drift.per_kelvin.over_default.any():
         return ()

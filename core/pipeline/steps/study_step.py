@@ -49,7 +49,7 @@ def keep_study(
     folder: Path, kind: Kind, text: str, base: Path, limits: Mapping[str, float], name: str = THICKNESS,
     progress: Progress = silent,
 ) -> KeptStudy:  # fmt: skip
-    """Make a study of a table and keep it with the table in the project: the caller puts it into the project's list.
+    """Make a study of a table and store both in the project: the caller adds it to the project's list.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def keep_study(
 def keep_type1(
     folder: Path, repeats: Sequence[tuple[str, float, Doubts]], nominal: float, tolerance: float
 ) -> KeptStudy:
-    """Keep the type-1 study of repeats (label, value, doubts) against T = `tolerance`, the full width; all in mm.
+    """Store the type-1 study of repeats (label, value, doubts) against T = `tolerance`, the full width; all in mm.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def keep_type1(
 
 
 def look_at_study(folder: Path, id_: str) -> Study:
-    """The study called `id_` of the project in `folder`; InputError if it is gone or damaged."""
+    """Read the study called `id_` of the project in `folder`; InputError if it is gone or damaged."""
     return read_study(study_path(folder, id_))
 
 
@@ -134,7 +134,7 @@ def export_study(folder: Path, id_: str, path: Path) -> Path:
 
 
 def read_study_table(path: Path) -> str:
-    """The text of a table, once it is known to be one; InputError if it is none."""
+    """Read the text of a table, and check that it is one; InputError if not."""
     table_of(text := read_text(path), path)
     return text
 
@@ -143,7 +143,7 @@ def project_rows(
     kind: Kind, folder: Path, artefact: Artefact, calibrated_mm: float, u_mm: float, diameter_mm: float,
     name: str = THICKNESS, progress: Progress = silent,
 ) -> str:  # fmt: skip
-    """Rows of a study's table, under a head line, from another project's results, with their doubts if they have any.
+    """Make rows of a study's table, under a head line, from another project's results, with their doubts if any.
 
     For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
     acceptance check what `read_positions` finds in its cloud, the project standing for the position. For a series its

@@ -36,7 +36,7 @@ _CAMERAS, _REFERENCE = (
 
 
 def compare_targets(pictures: PictureReader, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
-    """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
+    """Compute the ratio of the targets' sizes over the one stated, None where no picture shows both; with notes.
 
     The other one is the reference target if rig.toml states one, else the camera's. None as well where it does not say
     what that is.
@@ -100,7 +100,7 @@ def _without(seen: TargetView, picture: Picture) -> Picture:
 def with_compared_sizes(
     fan: FanCalibration, pictures: PictureReader, camera: Camera
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
-    """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
+    """Widen the scale of the fan by all that the sizes of the targets disagree, and note it.
 
     A plane target of which nothing is stated has the size that its pictures beside a target of a stated one give:
     uncertain by that one, by the pictures, and by all that they find, which nothing corrects.
@@ -129,5 +129,5 @@ def with_compared_sizes(
 
 
 def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
-    """The fan whose target has this standard uncertainty of its size, as a share: it is assumed no more."""
+    """Set the standard uncertainty of the size of the fan's target, as a share: it is no longer assumed."""
     return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False)

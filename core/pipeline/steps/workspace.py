@@ -44,25 +44,25 @@ of the recording set alone: no result rests on it, nor it on any, and it is ther
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Calibration:
-    """The camera and the fan a scan is measured with, and the id that names the two."""
+    """Camera and fan of a scan, and the id of the two."""
 
     camera: CameraCalibration
     fan: FanCalibration
 
     @property
     def id(self) -> str:
-        """Written into everything measured with this calibration."""
+        """Id written into everything measured with this calibration."""
         return f"{camera_id(self.camera.camera)}-{planes_id(self.fan.fan)}"
 
 
 def planes_of(calibration_id: str) -> str:
-    """The id of the fan within that of a calibration."""
+    """Return the id of the fan within that of a calibration."""
     return calibration_id.rpartition("-")[2]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StepLog:
-    """What a step leaves for run.json, and where it puts its results until all of them are there."""
+    """Entries of a step for run.json, and the folder of its results until all of them are there."""
 
     beside: Path
     pictures: PictureReader
@@ -74,13 +74,13 @@ class StepLog:
     frames: list[FrameRecord] = field(default_factory=list)
 
     def path(self, name: str) -> Path:
-        """Where the step writes the result `name`, a key of FILES."""
+        """Return the path to which the step writes the result `name`, a key of FILES."""
         return self.beside / FILES[name]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Workspace:
-    """A recording set and the folder its results go to; `part` names the part if it is not named like the set.
+    """Recording set and the folder of its results; `part` names the part if it is not named like the set.
 
     What the pictures of an interim check showed is kept in the folder `kept`, if there is one.
     """
@@ -92,21 +92,21 @@ class Workspace:
 
     @classmethod
     def open(cls, recording_set: RecordingSet, out: Path, part: str = "", kept: Path | None = None) -> Workspace:
-        """Make the folder if need be; InputError if nothing can be written there."""
+        """Make the folder if it is missing; InputError if nothing can be written there."""
         require_outside(recording_set, out)
         return cls(recording_set, make_folder(out), part, kept)
 
     def path(self, name: str) -> Path:
-        """Where the result `name`, a key of FILES, lies."""
+        """Return the path of the result `name`, a key of FILES."""
         return self.out / FILES[name]
 
     def clear(self) -> None:
-        """Remove the results of an earlier run: old and new never stand side by side, wherever it is cut off."""
+        """Remove the results of an earlier run: old and new are never mixed, even after an interruption."""
         self.put_ridges({})
         put_results(self.out, None, CLEARED)
 
     def put_ridges(self, ridges: Mapping[str, NDArray[np.uint8]]) -> None:
-        """Put pictures (H, W), by the names of their poses, in place of all older ones in RIDGES.
+        """Write pictures (H, W), by the names of their poses, in place of all older ones in RIDGES.
 
         Raises
         ------
@@ -125,7 +125,7 @@ class Workspace:
             write_picture(make_folder(folder) / f"{name}-ridge.png", ridge)
 
     def written(self) -> dict[str, Path]:
-        """The results that are there, by their keys in FILES."""
+        """List the results that are there, by their keys in FILES."""
         return {name: self.path(name) for name in FILES if self.path(name).exists()}
 
     def calibration(self) -> Calibration:
@@ -133,7 +133,7 @@ class Workspace:
         return read_calibration(self.out)
 
     def record(self) -> RunRecord:
-        """What run.json says so far; a fresh record where there is none."""
+        """Read run.json so far; a fresh record where there is none."""
         if self.path("run").exists():
             return read_run(self.path("run"))
         return RunRecord(self.recording_set.name, self.part or self.recording_set.name, _now())
@@ -172,7 +172,7 @@ class Workspace:
 
 @contextmanager
 def staged(out: Path, step: str, gone: Collection[str] = ()) -> Iterator[Path]:
-    """A folder in which a step makes new results; if all goes well, they take the place of the old ones in `out`.
+    """Make a folder for a step's new results; if all goes well, they replace the old ones in `out`.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def _renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> No
 
 @contextmanager
 def made_beside(out: Path) -> Iterator[Path]:
-    """A folder among the results in `out` to make new ones in; it goes in the end, whatever is left in it.
+    """Make a folder among the results in `out` for new ones; it is removed in the end with all that is left in it.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def made_beside(out: Path) -> Iterator[Path]:
 
 
 def put_results(out: Path, beside: Path | None, gone: Collection[str]) -> None:
-    """Remove the results `gone` from `out`, keys of FILES, then move there what is in `beside`, if there is any.
+    """Remove the results `gone` from `out`, keys of FILES, then move there what is in `beside`, if any.
 
     What rests on another goes before it and comes after it: whoever pulls the plug finds old ones or new ones, perhaps
     not all, but never both.
@@ -262,14 +262,14 @@ def _same(one: Path, other: Path) -> bool:
 
 
 def read_calibration(out: Path) -> Calibration:
-    """The calibration among the results in `out`; InputError as :meth:`Workspace.calibration`."""
+    """Read the calibration among the results in `out`; InputError as :meth:`Workspace.calibration`."""
     camera = read_camera(out / FILES["camera"])
     fan = read_planes(out / FILES["planes"], camera.camera)
     return Calibration(fan.camera_used(camera), fan)
 
 
 def check_calibration(path: Path, found_id: str, calibration: Calibration) -> None:
-    """InputError if a result was measured with another calibration than the one beside it."""
+    """Raise InputError if a result was measured with another calibration than the one beside it."""
     if found_id and found_id != calibration.id:
         raise InputError(
             Message(
@@ -288,7 +288,7 @@ def check_calibration(path: Path, found_id: str, calibration: Calibration) -> No
 
 
 def check_size(path: Path, shape: tuple[int, ...], camera: Camera) -> None:
-    """InputError if a picture (height, width) is not of the size the camera was calibrated at."""
+    """Raise InputError if a picture (height, width) is not of the size the camera was calibrated at."""
     height, width = shape
     if (width, height) != camera.image_size:
         wanted = " × ".join(map(str, camera.image_size))

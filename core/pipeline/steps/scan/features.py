@@ -27,7 +27,7 @@ def scan_features(
     earlier: Path | None = None,
     seen: Callable[[], SeenScan] | None = None,
 ) -> ScanFeatures:
-    """Centrelines and crossings of all pictures of a scan, and the notes on them.
+    """Extract centrelines and crossings of all pictures of a scan, or read the stored ones.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def scan_features(
 
 
 def crossed_scan(looked: SeenScan, camera: Camera, progress: Progress = silent) -> ScanFeatures:
-    """The features of a scan whose pictures have been looked at."""
+    """Compute the features of a scan from the centrelines of its pictures."""
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
     notes, faults = (*looked.notes, *features.notes), (*looked.faults, *features.faults)
     return replace(features, notes=notes, faults=faults, too_fine_for_mosaic=looked.too_fine_for_mosaic)

@@ -31,14 +31,14 @@ from core.scan.scan_evidence import scan_evidence
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Solved:
-    """A solved scan, the features it rests on in the end, and the calibration it was solved with."""
+    """Solved scan, the features last used, and the calibration it was solved with."""
 
     features: ScanFeatures
     scan: ScanResult
     calibration: Calibration
 
     def evidence(self, deviations: Sequence[Deviation]) -> Evidence:
-        """What the scan says of K deviations of camera and fan."""
+        """Compute the evidence of the scan about K deviations of camera and fan."""
         return scan_evidence(
             self.features, self.scan, self.calibration.camera.camera, self.calibration.fan.fan, deviations
         )
@@ -46,7 +46,7 @@ class Solved:
 
 @dataclass(frozen=True, slots=True)
 class SectionChange:
-    """Whether the fan's stripes are skewed otherwise than in its calibration, what is told of it, and what it may do.
+    """Change of the section of the fan's stripes since its calibration, its notes and its effect.
 
     `surely` is None where it is not known. There are notes and deviations only where it is so.
     """
@@ -58,7 +58,7 @@ class SectionChange:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Judgement:
-    """What a scan is worth.
+    """Judgement of a scan: its uncertainty and the facts that decide what it proves.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Judgement:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """The most likely cause, what changed, and why nothing measured is proof."""
+        """Notes on the most likely cause, on what changed, and why nothing measured is proof."""
         return (*self.likely, *self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
 
 
@@ -110,7 +110,7 @@ def judged_scan(
     method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> Judgement:
-    """Reckon what calibrations, and what changed since, do to a scan, and whether anything in it is proof.
+    """Compute the uncertainty of a scan from its calibrations and what has changed since, and find causes of misfit.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def facts_of(
     too_fine_for_mosaic: bool | None,
     scan: ScanResult | None = None,
 ) -> ScanFacts:
-    """The facts of the planes and the day, with those that the pictures show; within one picture nothing moves."""
+    """Collect the facts of the planes, the day and the pictures; within one picture nothing moves."""
     return replace(
         of_the_day,
         moved=False if scan is None else scan.moved,
@@ -184,19 +184,19 @@ def facts_of(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class KeptPoses:
-    """What the poses of a fan's calibration showed, none where that is not kept, and a note if its file is damaged."""
+    """Stored poses of a fan's calibration, none where they are not stored, and a note if their file is damaged."""
 
     poses: tuple[PoseFeatures, ...] = ()
     notes: tuple[Message, ...] = ()
 
     @property
     def stripes(self) -> list[Sequence[Centreline]]:
-        """Those on the plate of each pose."""
+        """Stripes on the plate of each pose."""
         return [pose.centrelines for pose in self.poses]
 
 
 def kept_poses_of(work: Workspace, calibration: Calibration) -> KeptPoses:
-    """What is kept of the poses of the fan's calibration; those of a re-adjusted fan are from before that."""
+    """Read the stored poses of the fan's calibration; those of a re-adjusted fan are from before that."""
     try:
         return KeptPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
     except InputError as error:  # a scan needs nothing of them
@@ -215,7 +215,7 @@ def _planes_of(calibration: Calibration) -> Iterator[str]:
 def section_since(
     calibration: Calibration, poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline]
 ) -> SectionChange:
-    """How the stripes of the `fan` are skewed otherwise than in the `poses` of its calibration.
+    """Compare the skewness of the stripes of the `fan` with that in the `poses` of its calibration.
 
     A re-adjusted fan rests on stripes of the day.
     """

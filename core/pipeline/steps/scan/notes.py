@@ -27,7 +27,7 @@ def notes_on_scan(
     light: PartLight | None,
     log: FolderLog,
 ) -> tuple[Message, ...]:
-    """All that is told of a scan, the gravest first.
+    """Collect all notes on a scan, the gravest first.
 
     `kept` are the poses of its calibration, `light` is that on its part, `log` that of its recording.
     """
@@ -51,19 +51,19 @@ def notes_on_scan(
 
 
 def notes_on_focus(kept: KeptPoses, fan: Sequence[Centreline]) -> tuple[Message, ...]:
-    """A note if the fan's stripes are much wider than in its calibration; none where its poses are not kept."""
+    """Note if the fan's stripes are much wider than in its calibration; none where its poses are not stored."""
     then, now = stripe_width(line for lines in kept.stripes for line in lines), stripe_width(fan)
     note = None if then is None or now is None else other_focus(now, then)
     return () if note is None else (note,)
 
 
 def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Message, ...]:
-    """Give a note if nothing says how the camera reads its rows out: the sweeps of a steady hand do not either."""
+    """Note if nothing states how the camera reads its rows out, and the sweeps of a steady hand do not show it."""
     if row_time_us is not None or scan.read_out.moves:
         return ()
     return (note_of("scan.shutter_assumed", field=Field("[camera] row_time_us")),)
 
 
 def notes_on_lost_frames(lost: int) -> tuple[Message, ...]:
-    """A note if frames were lost while a live scan was recorded."""
+    """Note if frames were lost while a live scan was recorded."""
     return (note_of("scan.frames_lost", n=lost),) if lost else ()

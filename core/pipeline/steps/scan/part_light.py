@@ -20,7 +20,7 @@ Plates = Sequence[tuple[Pose, Sequence[Centreline]]]
 
 
 def part_light(solved: Solved, plates: Plates) -> PartLight | None:
-    """How much wider stripes are on the part than on the table; None where that is not known."""
+    """Compare the width of stripes on the part with that on the table; None where that is not known."""
     scan, camera = solved.scan, solved.calibration.camera.camera
     if scan.collapsed:
         return None
@@ -29,7 +29,7 @@ def part_light(solved: Solved, plates: Plates) -> PartLight | None:
 
 
 def plates_of(kept: KeptPoses, calibration: Calibration) -> Plates:
-    """The plates of a calibration whose pictures' features are `kept`.
+    """Make the plates of a calibration from the stored features of its pictures.
 
     A re-adjustment moves the fan by tenths of a mm: how wide a lens at half a metre blurs stripes is as before.
     """
@@ -38,7 +38,7 @@ def plates_of(kept: KeptPoses, calibration: Calibration) -> Plates:
 
 
 def notes_on_part_light(light: PartLight | None) -> tuple[Message, ...]:
-    """A note if stripes on the part are surely wider than on the table."""
+    """Note if stripes on the part are surely wider than on the table."""
     if light is None or not light.surely:
         return ()
     return (

@@ -50,7 +50,7 @@ FEWEST_FOR_QUANTILE = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenScan:
-    """What the pictures of a scan show, and what its reader has found: a `PictureReader` learns it.
+    """Centrelines of the pictures of a scan, and what its reader has read: a `PictureReader` learns it.
 
     `averaged` are the same `lines`, averaged along themselves; `notes`, `faults` and `too_fine_for_mosaic` are those of
     `ScanFeatures`; `reference` is the picture that shows the fan alone, or the first of those it was made from.
@@ -75,7 +75,7 @@ def look_at_scan(
     watching: Callable[[ReferenceFeatures], Callable[[FrameFeatures], None]] | None = None,
     coming: Iterable[Path] | None = None,
 ) -> SeenScan:
-    """What the reference and all frames of a set show.
+    """Extract the centrelines of the reference and all frames of a scan.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def look_at_scan(
 def begin_looking(
     recording_set: RecordingSet, settings: Options, progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], SeenScan] | None:
-    """Have the pictures of a scan looked at `beside` while camera and planes are calibrated; what waits for it.
+    """Start to extract a scan's centrelines in the process `beside`; returns a function that waits for them.
 
     None where there is no such process.
     """
@@ -140,7 +140,7 @@ def begin_looking(
 
 
 def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
-    """The options for pictures of these sites, in px of them."""
+    """Convert the options to pictures of these sites, in px of them."""
     return replace(
         looking,
         sweep_stripe=sites.stripe_of(looking.sweep_stripe),
@@ -151,7 +151,7 @@ def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
 
 
 def of_whole(reference: ReferenceFeatures, sites: Sites, picture: Picture) -> ReferenceFeatures:
-    """What these sites of a whole picture with the fan alone show, in its px."""
+    """Extract what these sites of a whole picture with the fan alone show, in its px."""
     return replace(reference, base=picture, fan=sites.brought_back(reference.fan))
 
 
@@ -208,7 +208,7 @@ def _exposures(
 
 
 def feature_options(settings: Options) -> FeatureOptions:
-    """How the pictures of a scan are looked at."""
+    """Make the options of extracting features from the pictures of a scan."""
     return FeatureOptions(sweep_stripe=settings.stripe, fan_stripe=settings.stripe)
 
 
@@ -218,7 +218,10 @@ def stream_frames(
     times: StageTimes | None = None,
     coming: Iterable[Path] | None = None,
 ) -> Iterator[Frame]:
-    """Every frame in the order of the recording, or all that are `coming`; those left out by hand are not read."""
+    """Yield every frame in the order of the recording, or all that are `coming`.
+
+    Those left out by hand are not read.
+    """
     recording_set = pictures.recording_set
     if coming is not None:
         yield from pictures.stream(coming, times)
@@ -234,7 +237,7 @@ def stream_frames(
 
 
 def require_frames(recording_set: RecordingSet, settings: Options) -> None:
-    """InputError if there are no frames, or all are left out by hand."""
+    """Raise InputError if there are no frames, or all are left out by hand."""
     require_scan(recording_set)
     if not taken_frames(recording_set, settings):
         raise InputError(
@@ -247,14 +250,14 @@ def require_frames(recording_set: RecordingSet, settings: Options) -> None:
 
 
 def taken_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
-    """The frames that are not left out by hand."""
+    """List the frames that are not left out by hand."""
     return [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
 
 
 def reference_picture(
     pictures: PictureReader, camera: Camera | None, settings: Options, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
-    """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
+    """Read the picture with the fan alone, or make it from the frames, and note how it was made.
 
     Raises
     ------

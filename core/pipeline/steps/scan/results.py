@@ -24,14 +24,14 @@ from core.stage_times import StageTimes, stage
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Measured:
-    """What the scan step gives in memory; the same is in its files."""
+    """Results of the scan step in memory; the same is in its files."""
 
     scan: ScanResult
     mesh: Mesh
 
 
 def write_measured(log: StepLog, measured: Measured, file: ScanFile, progress: Progress) -> None:
-    """Write cloud, mesh and scan.npz in place of profiles; a StageTimes learns what that costs.
+    """Write cloud, mesh and scan.npz, and remove results of profiles; StageTimes records the time it takes.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def scan_file(
     settings: Options,
     light: PartLight | None,
 ) -> ScanFile:
-    """What scan.npz is to hold of a scan; the hashes of its pictures must have been taken."""
+    """Make the content of scan.npz; the hashes of its pictures must have been taken."""
     shown = _shown(scan.frames)
     mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(

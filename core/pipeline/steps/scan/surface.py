@@ -16,7 +16,7 @@ from core.second_process import SecondProcess
 def begin_surface(
     scanned: tuple[Cloud, tuple[int, int]], progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], tuple[Cloud, Mesh]]:
-    """Have the surface made `beside`, if there is such a process; what is returned waits for it, or makes it."""
+    """Start to make the surface in the process `beside`, if any; returns a function that waits for it, or makes it."""
     if beside is None:
         return lambda: make_surface(scanned, progress=progress)
     made = beside.submit(make_surface, scanned, progress)
@@ -24,7 +24,7 @@ def begin_surface(
 
 
 def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progress = silent) -> tuple[Cloud, Mesh]:
-    """Give a cloud its normals, and its mesh, for pictures of a size (width, height)."""
+    """Compute the normals of a cloud, and its mesh, for pictures of a size (width, height)."""
     cloud, image_size = scanned
     cloud = with_normals(cloud, progress=progress)
     surface = with_normals(fuse(cloud, image_size, progress=progress), progress=progress)
