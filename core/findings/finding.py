@@ -11,7 +11,7 @@ from core.messages import Message, plural_message
 
 
 class Weight(IntEnum):
-    """How grave a finding is: by it notes are ordered and coloured."""
+    """Gravity of a finding: notes are ordered and coloured by it."""
 
     INFORMATION = 0
     """Nothing is wrong."""
@@ -22,7 +22,7 @@ class Weight(IntEnum):
 
 
 class Effect(StrEnum):
-    """What a finding does to what rests on the result it is about; the values stand in the manual."""
+    """Effect of a finding on what rests on the result it is about; the values are in the manual."""
 
     NONE = "none"
     WIDENS_U = "widens U"
@@ -32,7 +32,7 @@ class Effect(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One row of the table of findings (`core.findings.table`).
+    """Row of the table of findings (`core.findings.table`).
 
     Parameters
     ----------
@@ -73,12 +73,12 @@ class Finding:
 
     @property
     def places(self) -> frozenset[str]:
-        """Names of the values that the note tells, and of the number it counts."""
+        """Names of the values in the note's text, and of the number it counts."""
         named = [name for text in (self.text, self.many) for _, name, _, _ in Formatter().parse(text) if name]
         return frozenset((*named, "n") if self.many else named)
 
     def note(self, **values: Any) -> Message:
-        """The note that tells it.
+        """Make the note on this finding.
 
         Raises
         ------

@@ -17,14 +17,14 @@ from core.messages import Field, Message
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """A fact by which nothing is proven, by its name in files, and the note that tells it."""
+    """Fact by which nothing is proven, by its name in files, with its note."""
 
     fact: str
     note: Message
 
     @classmethod
     def of(cls, note: Message) -> Doubt:
-        """The doubt that a note on a finding tells.
+        """Make the doubt of a note on a finding.
 
         Raises
         ------
@@ -43,7 +43,7 @@ class Doubt:
 
     @classmethod
     def named(cls, fact: str) -> Doubt:
-        """The doubt of that name in a file, told in short; of another version's name, by the name itself.
+        """Make the doubt of that name in a file, in short; of another version's name, by the name itself.
 
         Examples
         --------
@@ -59,23 +59,23 @@ Doubts: TypeAlias = tuple[Doubt, ...]
 
 
 def notes_of(doubts: Iterable[Doubt]) -> tuple[Message, ...]:
-    """The notes that tell of doubts."""
+    """List the notes on doubts."""
     return tuple(doubt.note for doubt in doubts)
 
 
 def doubts_named(facts: Sequence[str], *, complete: bool) -> Doubts:
-    """The doubts of a file that keeps their names, or, of an earlier version, whether there are none alone."""
+    """Make the doubts of a file that states their names, or, in an earlier version, only whether there are any."""
     return tuple(map(Doubt.named, facts or (() if complete else (of_proof.UNNAMED,))))
 
 
 def check_doubted(notes: Iterable[Message], doubts: Doubts) -> None:
-    """ValueError if a note of a result tells a finding by which nothing is proven, and the result has no doubts."""
+    """Raise ValueError if a note of a result is on a finding by which nothing is proven, and it has no doubts."""
     if not doubts and (told := list(filter(None, map(fact_of, notes)))):
         raise ValueError(f"notes of a result tell {told}, by which nothing is proven, and it has no doubts")
 
 
 def notes_beside(doubts: Doubts, notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Those of a file's notes that a result with these doubts may have: facts decide, whatever the notes say."""
+    """Select the notes of a file that a result with these doubts may have: facts decide, whatever the notes say."""
     return tuple(note for note in notes if doubts or not fact_of(note))
 
 
@@ -92,7 +92,7 @@ SIZE_UNCONFIRMED = Doubt.of(note_of("target.size_unconfirmed", field=Field("plan
 
 @dataclass(frozen=True, slots=True)
 class ScanFacts:
-    """Facts of a scan, and of the calibrations that it rests on, each of which takes away every proof where it holds.
+    """Facts of a scan and of its calibrations, each of which takes away every proof where it holds.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class ScanFacts:
 
     @property
     def doubts(self) -> Doubts:
-        """Why nothing measured proves conformity; () where nothing speaks against it.
+        """Reasons why no measured value proves conformity; () where there are none.
 
         That of the target's size, which is unconfirmed where it is not known, is the last.
 

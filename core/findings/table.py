@@ -21,7 +21,7 @@ assert len(FINDINGS) == sum(len(subject.ROWS) for subject in _SUBJECTS)
 
 
 def note_of(code: str, /, **values: Any) -> Message:
-    """The note on the finding with this code; `values` stand in the places of its text.
+    """Make the note on the finding with this code; `values` fill the places of its text.
 
     Raises
     ------
@@ -39,28 +39,28 @@ def note_of(code: str, /, **values: Any) -> Message:
 
 
 def weight_of(note: Message) -> Weight:
-    """Weight of a note, or of the gravest one that it tells of a result; one of another package is a caution."""
+    """Return the weight of a note, or of the gravest one inside it; one of another package is a caution."""
     row = FINDINGS.get(note.code)
     told = [weight_of(one) for one in note.values.values() if isinstance(one, Message) and row is None]
     return max(told) if told else Weight.CAUTION if row is None else row.weight
 
 
 def is_grave(note: Message) -> bool:
-    """Whether a note, or the one that it tells of a result, is said first and in red."""
+    """Whether a note, or the one inside it, is shown first and in red."""
     return weight_of(note) == Weight.GRAVE
 
 
 def fact_of(note: Message) -> str:
-    """The fact by which nothing is proven that a note tells; "" where it tells none."""
+    """Return the fact by which nothing is proven that a note tells; "" for none."""
     row = FINDINGS.get(note.code)
     return "" if row is None else row.fact
 
 
 def without_notes_on(field: str, notes: Iterable[Message]) -> tuple[Message, ...]:
-    """The notes but for those that tell of this field of the record they stand in."""
+    """Remove the notes on this field of the record they are in."""
     return tuple(note for note in notes if note.code not in FINDINGS or FINDINGS[note.code].told_of != field)
 
 
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Each note once, the gravest first, those of one weight in their order."""
+    """Sort notes, each once, the gravest first, those of one weight in their order."""
     return tuple(sorted(dict.fromkeys(notes), key=lambda note: -weight_of(note)))
