@@ -103,7 +103,7 @@ STRIPE = Values(
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a run can be told.
+    """Settings of a run.
 
     Parameters
     ----------
@@ -279,30 +279,30 @@ class Options:
 
     @property
     def for_camera(self) -> Options:
-        """What the camera's calibration is told of it."""
+        """Settings of the camera's calibration."""
         return self._only("camera")
 
     @property
     def for_planes(self) -> Options:
-        """What the calibration of the laser planes is told of it."""
+        """Settings of the calibration of the laser planes."""
         return self._only("planes")
 
     @property
     def for_scan(self) -> Options:
-        """What a scan, or a profile, is told of it, with what the pictures of the check are looked at by."""
+        """Settings of a scan or a profile, with those of reading the pictures of the check."""
         return self._only("scan", "check")
 
     @property
     def for_plan(self) -> Options:
-        """What a scan that is only planned is told of it."""
+        """Settings of a scan that is only planned."""
         return self._only("plan")
 
     def solving(self, row_time_us: float | None = None) -> ReconstructOptions:
-        """How a scan is solved; `row_time_us` is the time from one row of a picture to the next."""
+        """Make the options of solving a scan; `row_time_us` is the time from one row of a picture to the next."""
         return ReconstructOptions(self.method, self.sigma_cut_mm, row_time_us)
 
     def told(self, step: str) -> Mapping[str, Any]:
-        """What run.json says that a step was told."""
+        """Make the settings of a step for run.json."""
         told: dict[str, Any] = {}
         for row in settings_of(step):
             if row.setting.in_file:
@@ -311,7 +311,7 @@ class Options:
         return {**told, **excluded_told(self.excluded_in(step))}
 
     def excluded_in(self, part: str) -> tuple[str, ...]:
-        """The pictures left out by hand of one part (camera, planes or scan), in the order of their names."""
+        """List the pictures of one part (camera, planes or scan) left out by hand, in the order of their names."""
         return tuple(sorted(name for name in self.excluded if name.startswith(part + "/")))
 
     def _only(self, *steps: str) -> Options:
@@ -323,12 +323,12 @@ class Options:
 
 
 def settings_of(step: str) -> list[Row]:
-    """The settings that a step's result rests on; those that it shares with most others last."""
+    """List the settings that a step's result rests on; those shared with most other steps last."""
     return sorted((row for row in rows(Options) if step in row.setting.steps), key=lambda row: len(row.setting.steps))
 
 
 def told_of(kind: Kind, value: Any) -> Any:
-    """A value as run.json has it: an object as a table, names in their order, "automatic" for what is chosen."""
+    """Convert a value for run.json: an object as a table, names in order, "automatic" for what is chosen."""
     if isinstance(kind, Values):
         if value is None:
             return "automatic"
@@ -337,13 +337,13 @@ def told_of(kind: Kind, value: Any) -> Any:
 
 
 def excluded_told(names: Collection[str]) -> Mapping[str, Any]:
-    """For run.json what is left out by hand; nothing if nothing is."""
+    """Make the entry of run.json on what is left out by hand; nothing if nothing is."""
     return {"excluded": tuple(sorted(names))} if names else {}
 
 
 @dataclass(frozen=True, slots=True)
 class StatedTilt:
-    """How the faces stand, where one line does not show it.
+    """Tilt of the faces, where one line does not show it.
 
     `stage` is the pose of the plane target ("planes/pose03") that lay on what the part stands on; "": the light plane
     stands at right angles on the faces. `sd` is the standard uncertainty in rad; None: as usual for a stage.
@@ -354,7 +354,7 @@ class StatedTilt:
 
 
 def stated_stripe(width_px: float | None, contrast: float | None, where: str) -> StripeSettings | None:
-    """The stripe that was stated, None where nothing was; InputError that names `where` for anything but both or none.
+    """Make the stated stripe, None where nothing is stated; InputError that names `where` unless both or none are.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ _KEY = "setting"
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number above `above`, or `also_at` it, and at most `most`.
+    """Kind of a setting: a number above `above`, or `also_at` it, and at most `most`.
 
     `stated` is what a file that holds another one is told that it must be. In a form it is entered from `least` to
     `largest`, with so many `decimals`; the arrow keys go on by `step`. Where it may be left out, `none` are the words
@@ -41,7 +41,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """One of `values`, or None where that is one of them; `shown` are their words in a form, `stated` as of a Number.
+    """Kind of a setting: one of `values`; `shown` are their words in a form, `stated` as of a Number.
 
     `type` makes the value of what a file holds: an enumeration.
     """
@@ -54,17 +54,17 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Whether:
-    """Yes or no."""
+    """Kind of a setting: yes or no."""
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A line of text."""
+    """Kind of a setting: a line of text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """A set of names that match a `pattern`; `stated` as of a Number."""
+    """Kind of a setting: a set of names that match a `pattern`; `stated` as of a Number."""
 
     pattern: str
     stated: str
@@ -72,7 +72,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """An object of several settings by their names, of the class `type`; `optional`: or None."""
+    """Kind of a setting: an object of several settings by their names, of the class `type`; `optional`: or None."""
 
     type: type
     settings: Mapping[str, Setting]
@@ -85,7 +85,7 @@ Kind: TypeAlias = Number | Choice | Whether | Text | Names | Values
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """How the command line calls a setting: its names, as "--skew/--no-skew", and what its value is called in help."""
+    """Flag of a setting on the command line: its names, as "--skew/--no-skew", and the name of its value in help."""
 
     name: str
     help: str
@@ -95,13 +95,13 @@ class Flag:
 
     @property
     def word(self) -> str:
-        """The first name as a parameter of a function: "stripe_width"."""
+        """First name as a parameter of a function: "stripe_width"."""
         return self.name.partition("/")[0].removeprefix("--").replace("-", "_")
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One setting. Texts are English words that the readers translate.
+    """Setting with its kind, unit, words and flag. Texts are English words that the readers translate.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Setting:
     keyed: bool = False
 
     def complaint(self, value: Any) -> Message | None:
-        """The reason why it cannot have this value; None if it can."""
+        """Give the reason why it cannot have this value; None if it can."""
         possible = True
         if isinstance(self.kind, Number):
             possible = self.kind.above < value <= self.kind.most
@@ -150,7 +150,7 @@ def described(kind: Kind, **known: Any) -> Mapping[str, Setting]:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A setting by its place in a table, as ("camera", "skew") in the options, and what it is as long as not stated."""
+    """Setting at its place in a table, as ("camera", "skew") in the options, with its default."""
 
     path: tuple[str, ...]
     setting: Setting
@@ -158,22 +158,22 @@ class Row:
 
     @property
     def key(self) -> str:
-        """Its own name, as forms know it."""
+        """Name of the setting itself, as forms use it."""
         return self.path[-1]
 
     @property
     def is_one(self) -> bool:
-        """Whether files know it as one value, not by what it consists of."""
+        """Whether files have it as one value, not as the settings it consists of."""
         return not isinstance(self.setting.kind, Values) or self.setting.kind.optional
 
     def value(self, table: Any) -> Any:
-        """What it is in a table; None within what is None."""
+        """Return the value of the setting in a table; None within what is None."""
         for name in self.path:
             table = None if table is None else getattr(table, name)
         return table
 
     def changed(self, table: T, value: Any) -> T:
-        """The table with it being `value`."""
+        """Set the value of the setting in a table."""
         first, *within = self.path
         if within:
             value = replace(getattr(table, first), **{within[0]: value})
@@ -181,12 +181,12 @@ class Row:
 
 
 def rows(table: type) -> tuple[Row, ...]:
-    """All settings of a dataclass, in its order; those within others are not among them."""
+    """List all settings of a dataclass, in its order; those within others are not among them."""
     return tuple(Row((one.name,), one.metadata[_KEY], one.default) for one in fields(table) if _KEY in one.metadata)
 
 
 def rows_within(row: Row) -> tuple[Row, ...]:
-    """The settings that one consists of; itself if it is one value."""
+    """List the settings that one consists of; itself if it is one value."""
     kind = row.setting.kind
     if not isinstance(kind, Values):
         return (row,)
