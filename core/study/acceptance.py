@@ -45,7 +45,7 @@ FEWEST = 12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ProbedSphere:
-    """A sphere by least squares: `centre` (3,), `diameter`, `form` (range of radial distances), in mm; points used."""
+    """Sphere by least squares: `centre` (3,), `diameter`, `form` (range of radial distances), in mm; points used."""
 
     centre: Array
     diameter: float
@@ -54,7 +54,7 @@ class ProbedSphere:
 
 
 def probed_sphere(points: Array) -> ProbedSphere:
-    """The sphere of free radius through (N, 3) points in mm.
+    """Fit the sphere of free radius through (N, 3) points in mm.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def probed_sphere(points: Array) -> ProbedSphere:
 
 
 def probed_flatness(points: Array) -> tuple[float, int]:
-    """Range in mm of the distances of (N, 3) points from their plane, and how many were used; WrongValue as above."""
+    """Compute the range in mm of the distances of (N, 3) points from their plane, and how many were used."""
     _enough(points, label("plane"))
     _, residuals, used = _trimmed(points, _plane)
     return float(np.ptp(residuals)), used
@@ -143,7 +143,7 @@ PATTERN = note_of("study.after_the_guideline")
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One quantity of one artefact in one position.
+    """Reading of one quantity of one artefact in one position.
 
     Parameters
     ----------
@@ -170,13 +170,13 @@ class Reading:
 
     @property
     def error(self) -> float:
-        """Measured − calibrated."""
+        """Error, measured − calibrated."""
         return self.measured - self.calibrated
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedQuantity:
-    """All positions of one quantity against its limit.
+    """Readings of one quantity in all positions against its limit.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ class CheckedQuantity:
 
     @property
     def title(self) -> Message:
-        """What is checked."""
+        """Name of the quantity that is checked."""
         return TITLES[self.quantity]
 
     @property
@@ -211,13 +211,16 @@ class CheckedQuantity:
         return self.worst.error
 
     def verdict_of(self, reading: Reading) -> Verdict:
-        """Decision on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
+        """Decide on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
         doubts = (*left_by_check(reading.doubts), *(self._of_artefact if reading.u <= 0 else ()))
         return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, doubts)
 
     @property
     def doubts(self) -> Doubts:
-        """That readings prove nothing, by their own scans or as their artefact has no uncertainty; () for none."""
+        """Doubts that readings prove anything, by their own scans or as their artefact has no uncertainty.
+
+        () for none.
+        """
         doubted = doubted_among((reading.position, left_by_check(reading.doubts)) for reading in self.readings)
         return (*doubts_of_study(doubted), *self._of_artefact)
 
@@ -230,34 +233,34 @@ class CheckedQuantity:
 
     @property
     def verdict(self) -> Verdict:
-        """Of the worst of the readings: one that does not conform is enough, all must conform."""
+        """Verdict of the worst of the readings: one that does not conform is enough, all must conform."""
         return Verdict.worst(self.verdict_of(one) for one in self.readings)
 
     @property
     def positions(self) -> int:
-        """How many there are; several readings may be of one."""
+        """Number of positions; several readings may be of one."""
         return len({one.position for one in self.readings})
 
     @property
     def enough_positions(self) -> bool:
-        """Whether there are as many positions as the guideline asks for."""
+        """Whether there are as many positions as the guideline requires."""
         return self.positions >= POSITIONS[self.quantity]
 
 
 @dataclass(frozen=True, slots=True)
 class AcceptanceCheck:
-    """The check: one entry for each quantity read."""
+    """Acceptance check: one entry for each quantity read."""
 
     quantities: tuple[CheckedQuantity, ...]
 
     @property
     def verdict(self) -> Verdict:
-        """Of the worst quantity with a limit; none if none has one."""
+        """Verdict of the worst quantity with a limit; none if none has one."""
         return Verdict.worst(one.verdict for one in self.quantities)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures; the first says what this is and is not."""
+        """Notes on the figures; the first states what the check is and is not."""
         said = [PATTERN]
         for one in self.quantities:
             if not one.enough_positions:

@@ -26,7 +26,7 @@ CHECKED = frozenset((
 
 
 def left_by_check(doubts: Doubts) -> Doubts:
-    """The doubts of what was measured of an artefact but those that it is measured to clear up."""
+    """Remove the doubts that measuring an artefact is to clear up."""
     return tuple(doubt for doubt in doubts if doubt.fact not in CHECKED)
 
 
@@ -70,13 +70,13 @@ class Artefact:
 
     @property
     def of_certificate(self) -> Certificate:
-        """What its certificate says of itself."""
+        """Certificate with its own data."""
         return Certificate(self.certificate, self.laboratory, self.due)
 
 
 @dataclass(frozen=True, slots=True)
 class ArtefactCheck:
-    """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that.
+    """Artefact as measured on a `day`: in mm, with the standard uncertainty of that.
 
     `characteristic` is the name of what was measured, as "ball diameter"; "" is the thickness of the part as a whole.
     `outside` says of one that lies outside the limits of the rig's own history that it does. By its `doubts` what was
@@ -93,7 +93,7 @@ class ArtefactCheck:
 
     @property
     def error_mm(self) -> float:
-        """Measured − certified."""
+        """Error in mm, measured − certified."""
         return self.measured_mm - self.artefact.value_mm
 
     @property
@@ -113,24 +113,27 @@ class ArtefactCheck:
 
     @property
     def lapsed(self) -> bool:
-        """Whether the certificate did not hold any more."""
+        """Whether the certificate had expired."""
         return self.artefact.of_certificate.lapsed(self.day)
 
     @property
     def own_doubts(self) -> Doubts:
-        """The doubts but those that it is measured to clear up."""
+        """Doubts except those that the artefact is measured to clear up."""
         return left_by_check(self.doubts)
 
     @property
     def verdict(self) -> Literal["passed", "doubtful", "failed"]:
-        """Failed where |E_n| is above 1; else doubtful by its doubts, a lapsed certificate or the rig's history."""
+        """Verdict: failed where |E_n| is above 1.
+
+        Else doubtful by its doubts, a lapsed certificate or the rig's history.
+        """
         if abs(self.e_n) > 1:
             return "failed"
         return "doubtful" if self.own_doubts or self.lapsed or self.outside is not None else "passed"
 
     @property
     def sentence(self) -> Message:
-        """What came of it, and what to do."""
+        """Sentence with the result of the check, and what to do."""
         if self.verdict == "failed":
             return note_of("artefact.failed", id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n)
         if self.own_doubts:

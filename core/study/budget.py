@@ -29,7 +29,7 @@ from core.messages import Message
 
 @dataclass(frozen=True, eq=False, slots=True)
 class UncertaintyBudget:
-    """A budget that adds up.
+    """Uncertainty budget with its sum.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ class UncertaintyBudget:
         return self.k * self.u
 
     def share(self, row: Contribution) -> float:
-        """Part of u² a row makes up, 0 … 1."""
+        """Compute the part of u² that a row makes up, 0 … 1."""
         return row.u_mm**2 / self.u**2 if self.u else 0.0
 
 
 def add_up(
     rows: Sequence[Contribution], *, value: float | None = None, coverage: float = COVERAGE, unit: str = "mm"
 ) -> UncertaintyBudget:
-    """The budget of independent contributions: u_c² = Σ u_i², ν_eff by Welch–Satterthwaite, k = t_p(ν_eff).
+    """Add up the budget of independent contributions: u_c² = Σ u_i², ν_eff by Welch–Satterthwaite, k = t_p(ν_eff).
 
     References
     ----------
@@ -95,7 +95,7 @@ OF_EACH_SCAN = frozenset((Cause.POINT_NOISE, Cause.SWEEP_PLANES))
 def from_budgets(
     values: Sequence[float], budgets: Sequence[Sequence[Contribution]], *, unit: str = "mm"
 ) -> UncertaintyBudget:
-    """Of the mean of n scans with a budget each.
+    """Make the budget of the mean of n scans with a budget each.
 
     What is common stays whole, at its quadratic mean over the scans. What is drawn anew with each scan shrinks with √n:
     as stated, or, where the values scatter by more than that, as observed, with n − 1 degrees of freedom. So no noise
@@ -119,7 +119,7 @@ def _quadratic_mean(source: Source, budgets: Sequence[Sequence[Contribution]]) -
 
 
 def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, unit: str = "mm") -> UncertaintyBudget:
-    """Of the mean of n scans whose budgets are not known.
+    """Make the budget of the mean of n scans whose budgets are not known.
 
     Parameters
     ----------

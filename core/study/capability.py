@@ -27,7 +27,7 @@ LARGEST_A2 = 0.752
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """A capability index and its 95 % confidence interval."""
+    """Capability index and its 95 % confidence interval."""
 
     value: float
     interval: tuple[float, float]
@@ -35,7 +35,7 @@ class Index:
 
 @dataclass(frozen=True, slots=True)
 class Indices:
-    """Cp and Cpk, or Pp and Ppk.
+    """Capability indices Cp and Cpk, or Pp and Ppk.
 
     `p` is the width of the tolerance over 6 σ, None with one limit alone; `pk` the room from the mean to the nearer
     limit over 3 σ.
@@ -60,7 +60,7 @@ class Scatter:
 
 
 def indices(scatter: Scatter, lower: float, upper: float) -> Indices:
-    """Indices for the limits `lower` < `upper`, one of which may be infinite.
+    """Compute the indices for the limits `lower` < `upper`, one of which may be infinite.
 
     The interval of p is that of σ by χ². That of pk adds, in squares, how well the mean is known: from n values, and
     from what moves all of them alike. σ holds the scatter of the measurement too, so an index is too small rather than

@@ -36,7 +36,7 @@ class ControlChart:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Both ends."""
+        """Lower and upper limit."""
         return self.lower, self.upper
 
     def holds(self, value: float) -> bool:
@@ -45,7 +45,10 @@ class ControlChart:
 
 
 def control_chart(values: Array, stated: float) -> ControlChart:
-    """Limits by the values (n,) of steady checks in the order of time, `stated` being their standard uncertainty."""
+    """Compute the limits from values (n,) of steady checks in the order of time.
+
+    `stated` is their standard uncertainty.
+    """
     known = np.asarray(values, dtype=np.float64)
     known = known[np.isfinite(known)]
     run = run_chart(known) if len(known) >= FEWEST else None

@@ -11,7 +11,7 @@ from core.messages import Message
 
 
 class DoubtedResult(NamedTuple):
-    """A result that has doubts, by its label in the study."""
+    """Result that has doubts, by its label in the study."""
 
     label: str
     doubts: Doubts
@@ -21,7 +21,7 @@ Doubted: TypeAlias = tuple[DoubtedResult, ...]
 
 
 def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
-    """Those of the results, each a label with its doubts, that have any; each label once."""
+    """Select the results, each a label with its doubts, that have any; each label once."""
     found: dict[str, dict[Doubt, None]] = {}
     for label, doubts in results:
         if doubts:
@@ -30,7 +30,7 @@ def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
 
 
 def doubts_of_study(doubted: Doubted) -> Doubts:
-    """The doubt of a study that rests on these results, with why each of them proves nothing; () without any.
+    """Make the doubt of a study that rests on these results, with the reasons of each; () without any.
 
     Examples
     --------

@@ -68,7 +68,7 @@ class GrrIntervals:
 def intervals(
     squares: Mapping[str, tuple[float, int]], shape: tuple[int, ...], tolerance: float | None, seed: int = 0
 ) -> GrrIntervals:
-    """Components and intervals from mean squares.
+    """Compute components and intervals from mean squares.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def intervals(
 
 
 def components(squares: Mapping[str, Array], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Variances by source, each (n,), none below 0, from mean squares (n,); see `core.study.grr` for the formulas."""
+    """Compute variances by source, each (n,), none below 0, from mean squares (n,); formulas in `core.study.grr`."""
     _, operators, repeats = shape
     error = squares["error"]
     both = squares.get("interaction", error)
@@ -137,7 +137,7 @@ ENOUGH_CATEGORIES = 5
 
 @dataclass(frozen=True, slots=True)
 class AnovaRow:
-    """A line of the table: sum of squares, degrees of freedom, mean square, F and its p (None for error and total)."""
+    """Line of the table: sum of squares, degrees of freedom, mean square, F and its p (None for error and total)."""
 
     source: str
     ss: float
@@ -149,7 +149,7 @@ class AnovaRow:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """A component of the variation.
+    """Component of the variation.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GrrStudy:
-    """A crossed study.
+    """Crossed gauge R&R study.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ class GrrStudy:
     doubted: Doubted = ()
 
     def component(self, source: str) -> Component:
-        """The component of that name."""
+        """Find the component of that name."""
         return next(one for one in self.components if one.source == source)
 
     @property
@@ -240,13 +240,16 @@ class GrrStudy:
 
     @property
     def grr(self) -> float:
-        """The %GRR that decides, as a fraction: of T if it is stated (the parts of a study seldom are the process)."""
+        """Value of %GRR for the decision, as a fraction.
+
+        Of T if it is stated, as the parts of a study seldom are the process.
+        """
         of_all = self.component("gauge R&R")
         return of_all.of_total if of_all.of_tolerance is None else of_all.of_tolerance
 
     @property
     def verdict(self) -> Fitness:
-        """By %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D).
+        """Verdict by %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D).
 
         Not proven where results of measurements prove nothing.
         """
@@ -257,7 +260,7 @@ class GrrStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures."""
+        """Notes on the figures."""
         p, o, r = self.values.shape
         said = [*notes_of(doubts_of_study(self.doubted))]
         if self.pooled:
@@ -280,7 +283,7 @@ def grr_study(
     unit: str = "mm",
     doubted: Doubted = (),
 ) -> GrrStudy:
-    """Study of every part measured by every operator, each as often.
+    """Analyse a study of every part measured by every operator, each as often.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ THICKNESS = "thickness"
 
 @dataclass(frozen=True, slots=True)
 class RepeatStatistics:
-    """What `n` measurements of one thickness say together, in mm.
+    """Statistics of `n` measurements of one thickness, in mm.
 
     `error_mm` is mean − nominal, `rmse_mm` the root mean square of the single errors (over n), `largest_error_mm` the
     largest magnitude of one; all None without a nominal value. `std_mm` is the standard deviation of a single
@@ -56,7 +56,7 @@ class RepeatStatistics:
 
 
 def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = None) -> RepeatStatistics:
-    """Mean, error, RMSE, standard deviation and largest error of repeated `thicknesses` in mm.
+    """Compute mean, error, RMSE, standard deviation and largest error of repeated `thicknesses` in mm.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = N
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RunChart:
-    """What a chart of the values in their order needs.
+    """Data for a chart of the values in their order.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class RunChart:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Histogram:
-    """How many values (`counts`, B) lie between the `edges` (B + 1)."""
+    """Counts of values (`counts`, B) between the `edges` (B + 1)."""
 
     edges: Array
     counts: NDArray[np.int64]
@@ -105,7 +105,7 @@ class Histogram:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RepeatStudy:
-    """Repeats of one quantity, and what they prove.
+    """Study of repeats of one quantity.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ class RepeatStudy:
 
     @property
     def verdict(self) -> Verdict:
-        """By ISO 14253-1, of the mean; none without limits.
+        """Verdict on the mean by ISO 14253-1; none without limits.
 
         Nothing is proven while its uncertainty is not complete, or a repeat is doubted.
         """
@@ -164,13 +164,13 @@ class RepeatStudy:
 
     @property
     def doubts(self) -> Doubts:
-        """By what facts the mean proves nothing."""
+        """Doubts that the mean proves anything."""
         of_u = () if self.complete else (Doubt.of(note_of("study.scatter_alone")),)
         return (*doubts_of_study(self.doubted), *of_u)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures."""
+        """Notes on the figures."""
         said = notes_of(self.doubts)
         if self.run is not None and self.run.outside:
             names = [self.labels[place] for place in self.run.outside]
@@ -180,7 +180,7 @@ class RepeatStudy:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """The requirement on the mean of repeats: its nominal value and the deviations permitted from it.
+    """Requirement on the mean of repeats: its nominal value and the deviations permitted from it.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def repeat_study(
     asked: Requirement = Requirement(),
     doubted: Doubted = (),
 ) -> RepeatStudy:
-    """Study of n ≥ 1 repeats, in the unit of the budget of their mean.
+    """Analyse n ≥ 1 repeats, in the unit of the budget of their mean.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def repeat_study(
 
 
 def run_chart(values: Array) -> RunChart | None:
-    """Centre line and limits of `values` (n,) in their order; None if n < 2."""
+    """Compute centre line and limits of `values` (n,) in their order; None if n < 2."""
     if len(values) < 2:
         return None
     centre = float(values.mean())
@@ -249,7 +249,7 @@ def run_chart(values: Array) -> RunChart | None:
 
 
 def histogram(values: Array) -> Histogram:
-    """Counts of `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
+    """Count `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
     if not np.ptp(values):
         counts, edges = np.histogram(values, 1)
     else:

@@ -32,7 +32,7 @@ LARGEST_SUBGROUP = 25
 
 @dataclass(frozen=True, slots=True)
 class StatedUncertainty:
-    """What the measurements of a series state of themselves, as standard uncertainties in quadratic mean, in its unit.
+    """Stated standard uncertainties of the measurements of a series in quadratic mean, in its unit.
 
     `own` is drawn anew with each measurement and so surely part of their scatter; `whole` is all of it. What is not
     known to be drawn anew (`common`) may move all of them alike.
@@ -43,13 +43,13 @@ class StatedUncertainty:
 
     @property
     def common(self) -> float:
-        """√(whole² − own²)."""
+        """Uncertainty that all measurements share, √(whole² − own²)."""
         return math.sqrt(max(0.0, self.whole**2 - self.own**2))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeriesStudy:
-    """Values of one characteristic of part after part.
+    """Study of values of one characteristic of part after part.
 
     Parameters
     ----------
@@ -97,22 +97,22 @@ class SeriesStudy:
 
     @property
     def points(self) -> int:
-        """Points of the chart: whole subgroups, or values."""
+        """Number of points of the chart: whole subgroups, or values."""
         return self.n // self.size
 
     @property
     def mean(self) -> float:
-        """Of all values."""
+        """Mean of all values."""
         return float(self.values.mean())
 
     @property
     def s(self) -> float:
-        """Of all values, over n − 1."""
+        """Standard deviation of all values, over n − 1."""
         return float(self.values.std(ddof=1)) if np.ptp(self.values) else 0.0
 
     @property
     def indices(self) -> dict[str, Index]:
-        """Cp, Cpk, Pp and Ppk by their names, as far as they are known."""
+        """Capability indices Cp, Cpk, Pp and Ppk by their names, as far as they are known."""
         found: dict[str, Index | None] = {}
         if self.short is not None:
             found |= {"Cp": self.short.p, "Cpk": self.short.pk}
@@ -122,7 +122,10 @@ class SeriesStudy:
 
     @property
     def share_of_u(self) -> tuple[float, float] | None:
-        """Of s²: what the measurement surely makes up, and at most; None if it states no uncertainty, or s is 0."""
+        """Least and largest share of s² that the measurement makes up.
+
+        None without stated uncertainty, or if s is 0.
+        """
         if self.stated is None or not self.s:
             return None
         own, whole = (min(1.0, (u / self.s) ** 2) for u in (self.stated.own, self.stated.whole))
@@ -130,7 +133,7 @@ class SeriesStudy:
 
     @property
     def verdict(self) -> Finding:
-        """CAPABLE if Cpk and Ppk are surely LIMIT or more, not capable if one is surely less, with 95 % confidence.
+        """Verdict: CAPABLE if Cpk and Ppk are surely LIMIT or more, not capable if one is surely less, at 95 %.
 
         Nothing is proven of a process that left its control limits, nor by values that are too few or doubted.
         """
@@ -145,16 +148,16 @@ class SeriesStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures."""
+        """Notes on the figures."""
         return (*self._of_charts(), *self._of_capability())
 
     def label_of(self, point: int) -> str:
-        """What a point of the chart of places is called: the part, or the first and the last one of its subgroup."""
+        """Make the label of a point of the chart of places: the part, or the first and the last one of its subgroup."""
         first, last = self.labels[point * self.size], self.labels[(point + 1) * self.size - 1]
         return first if first == last else f"{first} … {last}"
 
     def label_of_spread(self, point: int) -> str:
-        """What a point of the chart of spreads is called: as `label_of`, or the two parts of a moving range."""
+        """Make the label of a point of the chart of spreads: as `label_of`, or the two parts of a moving range."""
         return self.label_of(point) if self.size > 1 else f"{self.labels[point]} … {self.labels[point + 1]}"
 
     @property
@@ -205,7 +208,7 @@ class SeriesStudy:
 
 
 def stated_uncertainty(u: Sequence[float], budgets: Sequence[Sequence[Contribution]]) -> StatedUncertainty:
-    """Of n measurements with standard uncertainties u (n,) and, where they are known, as many budgets."""
+    """Combine n measurements with standard uncertainties u (n,) and, where they are known, as many budgets."""
     own = [row.u_mm**2 for budget in budgets for row in budget if row.source in OF_EACH_SCAN]
     return StatedUncertainty(
         math.sqrt(sum(own) / len(budgets)) if budgets else 0.0, math.sqrt(float(np.mean(np.square(u))))
@@ -223,7 +226,7 @@ def series_study(
     unit: str = "mm",
     doubted: Doubted = (),
 ) -> SeriesStudy:
-    """Study of n ≥ 2 values in the order of measuring; the parameters are those of `SeriesStudy`.
+    """Analyse n ≥ 2 values in the order of measuring.
 
     Raises
     ------

@@ -38,7 +38,7 @@ POINTS_A_BREAK = 91.75
 
 @dataclass(frozen=True, slots=True)
 class Break:
-    """Point `place`, from 0, completes what `rule`, 1 to 4, says does not happen to a steady process."""
+    """Break of a rule of a steady process, 1 to 4, completed at point `place`, from 0."""
 
     rule: int
     place: int
@@ -46,7 +46,7 @@ class Break:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Chart:
-    """Points (k,) in the order of time, the lines they are compared with, and which of them break a rule."""
+    """Chart of points (k,) in the order of time, the lines they are compared with, and which of them break a rule."""
 
     points: Array
     centre: float
@@ -62,7 +62,7 @@ class Chart:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeriesCharts:
-    """The two charts of a series.
+    """Pair of charts of a series: places and spreads.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class SeriesCharts:
 
 
 def western_electric(points: Array, centre: float, sigma: float) -> tuple[Break, ...]:
-    """Where points (k,) break the rules 1 to 4 about `centre`, `sigma` being the standard deviation of one, above 0.
+    """Find where points (k,) break the rules 1 to 4 about `centre`; `sigma` > 0 is the standard deviation of one.
 
     The point told is the last one of the pattern, and one of those that lie so far out.
     """
@@ -101,7 +101,7 @@ def western_electric(points: Array, centre: float, sigma: float) -> tuple[Break,
 
 
 def single_values(values: Array) -> SeriesCharts:
-    """Charts of single values (n,), n ≥ 2, not all the same, and of their moving ranges.
+    """Make the charts of single values (n,), n ≥ 2, not all the same, and of their moving ranges.
 
     The mean moving range has the relative variance (0.8264 n − 1.082)/(n − 1)², neighbours sharing a value (Cryer,
     Ryan, Journal of Quality Technology 22 (1990) 187–192).
@@ -116,7 +116,10 @@ def single_values(values: Array) -> SeriesCharts:
 
 
 def subgroups(groups: Array) -> SeriesCharts:
-    """Charts of the means and the standard deviations of subgroups (g, m), m ≥ 2, not each of one value alone."""
+    """Make the charts of the means and the standard deviations of subgroups (g, m), m ≥ 2.
+
+    Not each of one value alone.
+    """
     count, size = groups.shape
     s = groups.std(axis=1, ddof=1)
     middle, unbiased = float(s.mean()), c4(size)
@@ -127,7 +130,7 @@ def subgroups(groups: Array) -> SeriesCharts:
 
 
 def c4(n: int) -> float:
-    """Mean of the standard deviation of n ≥ 2 normal values over σ."""
+    """Compute the mean of the standard deviation of n ≥ 2 normal values over σ."""
     return math.sqrt(2 / (n - 1)) * math.exp(math.lgamma(n / 2) - math.lgamma((n - 1) / 2))
 
 

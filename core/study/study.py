@@ -28,7 +28,7 @@ KINDS: Mapping[str, str] = {
 
 
 def kind_of(study: Study) -> Kind:
-    """The key of a study's kind."""
+    """Return the key of a study's kind."""
     match study:
         case RepeatStudy():
             return "repeats"

@@ -37,7 +37,7 @@ FEW_MEASUREMENTS = 25
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Type1Study:
-    """How well a reference part is measured, against a tolerance of full width T.
+    """Type-1 study: how well a reference part is measured, against a tolerance of full width T.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Type1Study:
 
     @property
     def verdict(self) -> Capability:
-        """CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE.
+        """Verdict: CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE.
 
         Not proven where results of repeats prove nothing.
         """
@@ -127,7 +127,7 @@ class Type1Study:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures."""
+        """Notes on the figures."""
         said = [*notes_of(doubts_of_study(self.doubted))]
         if self.n < FEW_MEASUREMENTS:
             said.append(note_of("study.few_repeats", n=self.n, least=FEW_MEASUREMENTS))
@@ -144,7 +144,7 @@ def type1_study(
     values: Sequence[float], reference: float, tolerance: float, doubted: Doubted = (), *,
     resolution: float | None = None, unit: str = "mm",
 ) -> Type1Study:  # fmt: skip
-    """Study of n ≥ 2 repeats of a reference part.
+    """Analyse n ≥ 2 repeats of a reference part.
 
     Parameters
     ----------
