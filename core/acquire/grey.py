@@ -21,13 +21,13 @@ def has_colours(picture: NDArray[Any]) -> bool:
 
 
 def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.bool_]:
-    """(height, width) True where a colour picture is saturated in anything that `to_grey` makes of it."""
+    """Mask (height, width) of the pixels of a colour picture that are saturated in anything `to_grey` uses."""
     names = PLAIN_CHANNELS if channel is None else channel.split("-")
     return np.asarray((picture[:, :, [_BGR[name] for name in names]] == np.iinfo(picture.dtype).max).any(axis=2))
 
 
 def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[Any]:
-    """Grey levels (height, width) of a picture in OpenCV's order of colours.
+    """Compute grey levels (height, width) of a picture in OpenCV's order of colours.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ _Key = tuple[str, str, Step]
 
 @dataclass(frozen=True, slots=True)
 class KeptSettings:
-    """What each source was told for each step: a target wants more light than a laser.
+    """Settings of each source for each step: a target needs more light than a laser.
 
     It is a value: `with_settings` gives another one. As text it is JSON, which any settings file can hold.
     """
@@ -24,15 +24,15 @@ class KeptSettings:
     _kept: Mapping[_Key, SourceSettings] = field(default_factory=dict)
 
     def settings(self, choice: SourceChoice, step: Step) -> SourceSettings:
-        """What this source was told last for this step; nothing, if it was never told anything."""
+        """Return the last settings of this source for this step; none, if there are none."""
         return self._kept.get((choice.kind, choice.id, step), SourceSettings())
 
     def with_settings(self, choice: SourceChoice, step: Step, settings: SourceSettings) -> KeptSettings:
-        """The same with other settings of this source for this step."""
+        """Replace the settings of this source for this step."""
         return KeptSettings({**self._kept, (choice.kind, choice.id, step): settings})
 
     def to_text(self) -> str:
-        """All of it as JSON."""
+        """Write all settings as JSON."""
         rows = [
             {"kind": kind, "id": identifier, "step": step, "settings": _plain(settings)}
             for (kind, identifier, step), settings in sorted(self._kept.items())
@@ -41,7 +41,7 @@ class KeptSettings:
 
     @classmethod
     def from_text(cls, text: str) -> KeptSettings:
-        """What `to_text` gave; rows that another version wrote in another way are left out."""
+        """Read the text of `to_text`; rows of another version in another form are left out."""
         try:
             rows = json.loads(text)
         except ValueError:

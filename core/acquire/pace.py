@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 class Pace:
-    """Says when the next frame of a recording is due.
+    """Clock that tells when the next frame of a recording is due.
 
     A reader that comes late gets its frame at once, and the following ones at the rate from then on: nothing of a
     recording is lost.
@@ -31,11 +31,11 @@ class Pace:
         self._last: float | None = None
 
     def restart(self) -> None:
-        """The next frame is due at once."""
+        """Restart: the next frame is due at once."""
         self._last = None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until the next frame is due, at most for `timeout_s`; whether it is."""
+        """Wait until the next frame is due, at most for `timeout_s`; True if it is."""
         now = self._clock()
         due = now if self._last is None or self.rate_hz <= 0 else max(now, self._last + 1 / self.rate_hz)
         if due - now > timeout_s:

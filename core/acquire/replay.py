@@ -24,7 +24,7 @@ Listing = Callable[[Step, Lasers], Sequence[Path]]
 
 
 class ReplaySource:
-    """A folder of pictures behind :class:`core.acquire.source.FrameSource`.
+    """Folder of pictures as a :class:`core.acquire.source.FrameSource`.
 
     Pictures of the two targets are each shown for a while, as if held still; switching the fan in the middle shows
     the same pose with the fan off. While the hand-held laser is off the reference is shown, as long as it takes.
@@ -71,11 +71,11 @@ class ReplaySource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """The rate alone."""
+        """Rate alone."""
         return Capabilities(rate_hz=ANY_RATE_HZ)
 
     def open(self) -> None:
-        """See that the folder is there; frames are counted anew."""
+        """Check that the folder is there; frames are counted anew."""
         if not self._folder.is_dir():
             what = (
                 Message("source.file_not_folder", "this is a file, not a folder")
@@ -90,7 +90,7 @@ class ReplaySource:
         self._list()
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set the rate (usual: 10 Hz; 0: as fast as it is read); there is nothing else to set."""
+        """Set the rate (default: 10 Hz; 0: as fast as it is read); there is nothing else to set."""
         self.capabilities.check(settings, self.name)
         if settings.rate_hz is not None:
             self._pace.rate_hz = settings.rate_hz
@@ -114,7 +114,7 @@ class ReplaySource:
         return self._list()
 
     def read(self, timeout_s: float) -> Frame | None:
-        """The next frame; raises Ended after the last one, and InputError for a damaged one."""
+        """Return the next frame; raises Ended after the last one, and InputError for a damaged one."""
         if self._at >= len(self._paths):
             if not (self._loops or self._rests) or not self._paths:
                 raise Ended

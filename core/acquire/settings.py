@@ -32,7 +32,7 @@ Limits = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The part of the sensor that is read: column and row of its first pixel, width and height, in pixels.
+    """Part of the sensor that is read: column and row of its first pixel, width and height, in pixels.
 
     Calibrations hold for the region their pictures were taken with.
 
@@ -58,7 +58,7 @@ class Region:
 
     @property
     def message(self) -> Message:
-        """The region in words."""
+        """Text of the region."""
         return Message(
             "source.region", "{width} × {height} pixels from column {left}, row {top}",
             width=self.width, height=self.height, left=self.left, top=self.top,
@@ -70,7 +70,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class SourceSettings:
-    """What a camera can be told; None leaves it as it is.
+    """Settings of a camera; None leaves one as it is.
 
     Parameters
     ----------
@@ -131,27 +131,27 @@ class SourceSettings:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What is not left as it is, by name."""
+        """Settings that are not None, by name."""
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
         return {name: value for name, value in pairs if value is not None}
 
     @property
     def stops_the_stream(self) -> bool:
-        """Whether a camera must stop taking pictures to be told this."""
+        """Whether a camera must stop taking pictures to change these settings."""
         return not (self.trigger is None and self.pixel_format is None and self.region is None)
 
     def only(self, names: Sequence[str]) -> SourceSettings:
-        """What of it has one of these names."""
+        """Select the settings with one of these names."""
         return SourceSettings(**{name: value for name, value in self.told.items() if name in names})
 
     def updated(self, newer: SourceSettings) -> SourceSettings:
-        """These settings with what `newer` says instead."""
+        """Replace settings by those that `newer` has."""
         return replace(self, **newer.told)
 
 
 @dataclass(frozen=True, slots=True)
 class Capabilities:
-    """Which settings a source has.
+    """Settings that a source has, with their limits.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class Capabilities:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of SourceSettings that can be told."""
+        """Names of the SourceSettings that can be changed."""
         there = {
             "exposure_ms": self.exposure_ms is not None,
             "gain_db": self.gain_db is not None,
@@ -187,7 +187,7 @@ class Capabilities:
         return tuple(name for name, can in there.items() if can)
 
     def check(self, settings: SourceSettings, where: str) -> None:
-        """InputError with one sentence unless a source called `where` can be told all of `settings`."""
+        """Raise InputError with one sentence unless a source called `where` can take all of `settings`."""
         for name, value in settings.told.items():
             if name not in self.names:
                 raise no_such_setting(name, where)
@@ -203,7 +203,7 @@ class Capabilities:
 
 
 def no_such_setting(name: str, where: str) -> InputError:
-    """The sentence for a setting that a source does not have."""
+    """Make the error for a setting that a source does not have."""
     return InputError(
         Message("source.setting_fixed", "the source does not let its {titles} be set", titles=TITLES[name][0]),
         where=where,
@@ -212,7 +212,7 @@ def no_such_setting(name: str, where: str) -> InputError:
 
 
 def check_number(name: str, value: float, limits: Limits, where: str) -> None:
-    """InputError unless `value` is within `limits`."""
+    """Raise InputError unless `value` is within `limits`."""
     title, unit = TITLES[name]
     if not limits[0] <= value <= limits[1]:
         raise InputError(
@@ -230,7 +230,7 @@ def check_number(name: str, value: float, limits: Limits, where: str) -> None:
 
 
 def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) -> None:
-    """InputError unless `value` is one of `choices`."""
+    """Raise InputError unless `value` is one of `choices`."""
     if value not in choices:
         raise InputError(
             Message(
@@ -245,7 +245,7 @@ def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) ->
 
 
 def check_region(region: Region, sensor: tuple[int, int], where: str) -> None:
-    """InputError unless `region` lies within a sensor of (width, height)."""
+    """Raise InputError unless `region` lies within a sensor of (width, height)."""
     if region.left + region.width > sensor[0] or region.top + region.height > sensor[1]:
         raise InputError(
             Message(

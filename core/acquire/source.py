@@ -41,7 +41,7 @@ Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 @dataclass(frozen=True, slots=True)
 class Lasers:
-    """Which lasers are on: the fixed fan, and the one moved by hand."""
+    """State of the lasers: whether the fixed fan is on, and the one moved by hand."""
 
     fan: bool
     hand: bool
@@ -49,7 +49,7 @@ class Lasers:
 
 @dataclass(frozen=True, slots=True)
 class SourceChoice:
-    """Which source: its kind by name, and which of that kind.
+    """Choice of a source: its kind by name, and which of that kind.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class SourceChoice:
 
 @dataclass(frozen=True, slots=True)
 class SourceInfo:
-    """One source that can be chosen, as a list shows it: its name, and what else is known of it.
+    """Source that can be chosen, as a list shows it: its name, and what else is known of it.
 
     Texts are what the device calls itself, messages what we call it.
     """
@@ -78,7 +78,7 @@ class SourceInfo:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
-    """One picture of a source.
+    """Picture of a source.
 
     Parameters
     ----------
@@ -99,50 +99,58 @@ class Frame:
 
 
 class Unplugged(InputError):
-    """The source is gone in the middle of its work; it may come back, so open it again."""
+    """Error that the source is gone during its work; it may come back, so open it again."""
 
 
 class Ended(Exception):
-    """A replay is at its end: there are no more frames."""
+    """Exception that a replay is at its end: there are no more frames."""
 
 
 class FrameSource(Protocol):
-    """A camera, or what stands in for one."""
+    """Camera, or a substitute for one."""
 
     @property
     def name(self) -> str:
-        """What a person calls it."""
+        """Displayed name of the source."""
 
     @property
     def capabilities(self) -> Capabilities:
-        """Which settings it has; exact limits only while it is open."""
+        """Settings that the source has; exact limits only while it is open."""
 
     def open(self) -> None:
-        """Make it ready to be read, also again after `close` or `Unplugged`; InputError says what to do if it fails."""
+        """Open the source for reading, also again after `close` or `Unplugged`.
+
+        InputError says what to do if it fails.
+        """
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set what is not None, before `open` or after it; InputError if it has no such setting or value."""
+        """Change the settings that are not None, before `open` or after it.
+
+        InputError if there is no such setting or value.
+        """
 
     def prepare(self, step: Step) -> None:
-        """Say what will be recorded. Only what knows its own scene (simulated rig, replay) acts on it."""
+        """Announce the step that will be recorded. Only what knows its own scene (simulated rig, replay) acts on it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Switch the lasers. True: the source has done it itself; False: a person must."""
+        """Switch the lasers; False if the user must do so. True: the source has done it itself; False: a person
+        must.
+        """
 
     def read(self, timeout_s: float) -> Frame | None:
-        """The next frame, or None if there is none within `timeout_s`; raises Unplugged and Ended."""
+        """Return the next frame, or None if there is none within `timeout_s`; raises Unplugged and Ended."""
 
     def close(self) -> None:
-        """Let go of it; harmless when it is closed already."""
+        """Release the source; harmless when it is closed already."""
 
 
 @runtime_checkable
 class WaitingSource(FrameSource, Protocol):
-    """A source that waits with what is before it until that was dealt with."""
+    """Source that keeps its scene until that has been recorded."""
 
     @property
     def waits(self) -> bool:
-        """Whether the next frame waits until it is read, now that it runs as it does."""
+        """Whether the next frame waits until it is read, at the present rate."""
 
     def go_on(self, frame: Frame) -> None:
-        """What a frame shows was taken, or is of no use."""
+        """Continue: the content of a frame was taken, or is useless."""

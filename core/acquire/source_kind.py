@@ -20,7 +20,7 @@ FIRST_CAMERA = Message("source.first_camera", "the first camera")
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SourceKind:
-    """One kind of live source.
+    """Kind of live source.
 
     Parameters
     ----------
@@ -60,5 +60,5 @@ class SourceKind:
 
     @property
     def missing(self) -> Message | None:
-        """Why this kind cannot be used on this computer, and what to install; None if it can."""
+        """Reason why this kind cannot be used on this computer, and what to install; None if it can."""
         return self.install if self.is_missing() else None

@@ -41,7 +41,7 @@ def is_missing() -> bool:
 
 
 def aravis() -> Any:
-    """Aravis's module.
+    """Import Aravis's module; InputError if it is missing.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def aravis() -> Any:
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """Identifier, name, and kind of connection of each camera that answers; InputError if Aravis is missing."""
+    """List identifier, name, and kind of connection of each camera that answers; InputError if Aravis is missing."""
     module = aravis()
     module.update_device_list()
     return [
@@ -106,7 +106,7 @@ def connect(identifier: str) -> AravisDriver:
 
 
 class AravisDriver:
-    """One camera of Aravis (:class:`core.acquire.drivers.genicam.Driver`)."""
+    """Camera of Aravis (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, module: Any, camera: Any) -> None:
         self._module, self._camera = module, camera
@@ -171,7 +171,7 @@ class AravisDriver:
 
 
 class DeviceFeatures:
-    """The features of a device (:class:`core.acquire.drivers.genicam_features.Features`)."""
+    """Features of a device (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, module: Any, device: Any) -> None:
         self._module, self._device = module, device

@@ -29,7 +29,7 @@ TICKS = "GevTimestampTickFrequency"
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """Serial number, name and kind of connection of each Basler camera that is plugged in.
+    """List serial number, name and kind of connection of each Basler camera that is plugged in.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDri
 
 
 def pylon_module() -> Any:
-    """Pypylon's module; InputError says what to install if it is missing."""
+    """Import pypylon; InputError says what to install if it is missing."""
     try:
         return importlib.import_module(f"{MODULE}.pylon")
     except ImportError as missing:
@@ -95,7 +95,7 @@ def pylon_module() -> Any:
 
 
 class PylonDriver:
-    """One open Basler camera (:class:`core.acquire.drivers.genicam.Driver`)."""
+    """Open Basler camera (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, pylon: Any, camera: Any, name: str) -> None:
         self.name, self.camera = name, camera
@@ -144,7 +144,7 @@ class PylonDriver:
 
 
 class PylonFeatures:
-    """The nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
+    """Nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, camera: Any) -> None:
         self._camera = camera

@@ -25,12 +25,12 @@ _MOST_16_BIT = 0xFFFF
 
 
 class DriverError(Exception):
-    """What a driver complains of, in its own words."""
+    """Error of a driver, in its own words."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Grabbed:
-    """What a driver hands over.
+    """Frame as a driver returns it.
 
     Parameters
     ----------
@@ -53,30 +53,30 @@ class Grabbed:
 
 
 class Driver(Protocol):
-    """One open camera of a driver. All but `close` may raise DriverError."""
+    """Open camera of a driver. All but `close` may raise DriverError."""
 
     name: str
     """What a person calls the camera."""
     features: Features
 
     def start(self) -> None:
-        """Let it take pictures."""
+        """Start taking pictures."""
 
     def stop(self) -> None:
-        """Let it rest, so that its picture can change in kind."""
+        """Stop taking pictures, so that their format can change."""
 
     def grab(self, timeout_s: float) -> Grabbed | None:
-        """The next frame; None if there is none within the time."""
+        """Return the next frame; None if there is none within the time."""
 
     def gone(self) -> bool:
-        """Whether the camera is away; asked when no frame comes."""
+        """Whether the camera is disconnected; called when no frame comes."""
 
     def close(self) -> None:
-        """Let go of it, also when it is gone."""
+        """Release the camera, also when it is disconnected."""
 
 
 class FrameNumbers:
-    """Counts the gaps in a camera's frame numbers.
+    """Counter of the gaps in a camera's frame numbers.
 
     Numbers of 16 bits (GigE Vision 1) begin again at 1 behind 65535, 0 being none. A number that goes back in another
     way is a camera that counts anew: nothing is known to be missing then.
@@ -86,11 +86,11 @@ class FrameNumbers:
         self._last: int | None = None
 
     def restart(self) -> None:
-        """The next number follows nothing."""
+        """Start anew: there is no number before the next one."""
         self._last = None
 
     def missing_before(self, number: int) -> int:
-        """How many frames are missing between the last number and this one."""
+        """Count the frames missing between the last number and this one."""
         last, self._last = self._last, number
         if last is None or number == last:
             return 0
@@ -101,7 +101,7 @@ class FrameNumbers:
 
 
 class GenICamSource:
-    """A GenICam camera behind :class:`core.acquire.source.FrameSource`.
+    """GenICam camera as a :class:`core.acquire.source.FrameSource`.
 
     The camera's own settings are kept where nothing else is said; colour is reduced to grey, where the camera gives no
     grey itself.
@@ -137,7 +137,7 @@ class GenICamSource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """What the open camera can be told; nothing while it is closed."""
+        """Settings of the open camera; none while it is closed."""
         if self._driver is None:
             return Capabilities()
         try:
@@ -146,7 +146,7 @@ class GenICamSource:
             raise self._gone(str(problem)) from problem
 
     def open(self) -> None:
-        """Find the camera, open it and let it run."""
+        """Find the camera, open it and start it."""
         self.close()
         driver = self._connect()
         self.name = driver.name
@@ -170,7 +170,7 @@ class GenICamSource:
         self._driver = driver
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set what the camera has, now or when it is opened; it rests a moment where it must."""
+        """Change the settings that the camera has, now or when it is opened; it is stopped for a moment if needed."""
         driver = self._driver
         if driver is not None:
             try:
@@ -189,14 +189,14 @@ class GenICamSource:
         self._wanted = self._wanted.updated(settings)
 
     def prepare(self, step: Step) -> None:
-        """Ignored: a real camera sees whatever is in front of it."""
+        """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """A person must switch them."""
+        """Return False: the user must switch them."""
         return False
 
     def read(self, timeout_s: float) -> Frame | None:
-        """The next frame, None if there is none within the time; Unplugged when the camera is gone."""
+        """Return the next frame, None if there is none within the time; Unplugged when the camera is gone."""
         driver = self._driver
         if driver is None:
             raise self._unplugged(Message("camera.not_open", "it is not open"))
@@ -215,7 +215,7 @@ class GenICamSource:
         return self._frame(grabbed)
 
     def close(self) -> None:
-        """Stop the camera and let go of it."""
+        """Stop the camera and release it."""
         driver, self._driver = self._driver, None
         if driver is not None:
             driver.close()

@@ -36,35 +36,35 @@ _SIZES = (("SensorWidth", "WidthMax", "Width"), ("SensorHeight", "HeightMax", "H
 
 
 class Features(Protocol):
-    """A camera's features by name. Asking for one that it does not have is an error of the caller's."""
+    """Features of a camera by name. Asking for one that it does not have is an error of the caller's."""
 
     def has(self, name: str) -> bool:
         """Whether there is such a feature, and it can be used now."""
 
     def number(self, name: str) -> float:
-        """The value of a number."""
+        """Return the value of a number."""
 
     def limits(self, name: str) -> tuple[float, float, float]:
-        """Smallest and largest value of a number, and its step: 0 if it has none."""
+        """Return smallest and largest value of a number, and its step: 0 if it has none."""
 
     def set_number(self, name: str, value: float) -> None:
         """Set a number."""
 
     def entries(self, name: str) -> tuple[str, ...]:
-        """What can be chosen now."""
+        """List the entries that can be chosen now."""
 
     def entry(self, name: str) -> str:
-        """What is chosen."""
+        """Return the chosen entry."""
 
     def choose(self, name: str, entry: str) -> None:
         """Choose an entry."""
 
     def run(self, name: str) -> None:
-        """Carry out a command."""
+        """Execute a command."""
 
 
 def capabilities_of(features: Features) -> Capabilities:
-    """What a camera can be told now."""
+    """Read the settings that a camera has now, with their limits."""
     limits = {name: _limits(features, name) for name in _NUMBERS}
     can_trigger = features.has("TriggerMode") and features.has("TriggerSource")
     return Capabilities(
@@ -79,7 +79,7 @@ def capabilities_of(features: Features) -> Capabilities:
 
 
 def make_grey(features: Features, where: str) -> str:
-    """Have the camera give grey levels, or else colours that can be read, and return its pixel format.
+    """Set the camera to grey levels, or else to colours that can be read, and return its pixel format.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def make_grey(features: Features, where: str) -> str:
 
 
 def apply(features: Features, settings: SourceSettings, where: str) -> None:
-    """Tell the camera called `where` all of `settings`; it must not stream if they stop the stream.
+    """Change all `settings` of the camera called `where`; it must not stream if they stop the stream.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def apply(features: Features, settings: SourceSettings, where: str) -> None:
 
 
 def sensor_size(features: Features) -> tuple[int, int] | None:
-    """(width, height) within which a region can be chosen; None if it cannot."""
+    """Read (width, height) within which a region can be chosen; None if it cannot."""
     if not (features.has("Width") and features.has("Height")):
         return None
     if features.limits("Width")[0] == features.limits("Width")[1] and not features.has("OffsetX"):
@@ -136,7 +136,7 @@ def sensor_size(features: Features) -> tuple[int, int] | None:
 
 
 def row_time_us(features: Features) -> float | None:
-    """Time from one row to the next in µs, 0 of a global shutter; None where the camera does not tell.
+    """Read the time from one row to the next in µs, 0 of a global shutter; None where the camera does not state it.
 
     The standard has `SensorShutterMode`, but no time of a row: of a rolling shutter that is the time of the whole
     read-out, in µs, over its rows, where the camera has `SensorReadoutTime`. Rows that begin together and end one after
@@ -151,7 +151,7 @@ def row_time_us(features: Features) -> float | None:
 
 
 def is_asked_for(features: Features) -> bool:
-    """Whether each picture must be asked for by the command TriggerSoftware."""
+    """Whether each picture must be requested by the command TriggerSoftware."""
     if not (features.has("TriggerMode") and features.has("TriggerSource")):
         return False
     return features.entry("TriggerMode") == "On" and features.entry("TriggerSource") == SOFTWARE

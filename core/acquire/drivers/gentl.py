@@ -38,14 +38,14 @@ _SEPARATOR = "#"
 
 
 def producers() -> tuple[Path, ...]:
-    """The producers that the makers' programs have installed on this computer."""
+    """Find the producers that the makers' programs have installed on this computer."""
     folders = [Path(text) for text in os.environ.get(PATH, "").split(os.pathsep) if text]
     found = [path for folder in folders if folder.is_dir() for path in sorted(folder.glob("*.cti"))]
     return tuple(dict.fromkeys(found))
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """Identifier, name, and maker and kind of connection of each camera that is found.
+    """List identifier, name, and maker and kind of connection of each camera that is found.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def connect(identifier: str) -> GenTLDriver:
 
 
 class GenTLDriver:
-    """One camera of a producer (:class:`core.acquire.drivers.genicam.Driver`)."""
+    """Camera of a producer (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, harvester: Any, info: Any) -> None:
         self.name = _name(info)
@@ -178,7 +178,7 @@ class GenTLDriver:
 
 
 class NodeFeatures:
-    """The nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
+    """Nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, nodes: Any) -> None:
         self._nodes = nodes

@@ -41,7 +41,7 @@ Capture = Any
 
 
 def capture_of(address: str) -> Capture:
-    """OpenCV's capture of a camera's number, a file or a network address; "" is camera 0."""
+    """Open OpenCV's capture of a camera's number, a file or a network address; "" is camera 0."""
     if not address or address.isdigit():
         return cv2.VideoCapture(int(address or 0))
     if "://" in address:
@@ -56,21 +56,21 @@ def capture_of(address: str) -> Capture:
 
 
 def opencv_name(address: str) -> str:
-    """What a person calls a source of this address."""
+    """Make the displayed name of a source of this address."""
     if not address or address.isdigit():
         return f"camera {int(address or 0)}"
     return address if "://" in address else Path(address).name
 
 
 def exposure_of(capture: Capture, exposure_ms: float) -> tuple[float, float]:
-    """What a backend calls manual exposure, and `exposure_ms` in its unit."""
+    """Return a backend's value for manual exposure, and `exposure_ms` in its unit."""
     if capture.getBackendName() in ("DSHOW", "MSMF"):
         return 0.25, log2(exposure_ms / 1000)
     return 1.0, exposure_ms * 10  # V4L2: units of 100 µs
 
 
 def list_cameras(devices: Path = Path("/sys/class/video4linux")) -> list[tuple[str, str]]:
-    """Numbers and names of the cameras that OpenCV could open."""
+    """List numbers and names of the cameras that OpenCV could open."""
     if platform.system() == "Linux":
         nodes = sorted(devices.glob("video*"), key=lambda path: int(path.name.removeprefix("video")))
         pictures = [node for node in nodes if _said(node / "index") == "0"]  # the others carry data about the pictures
@@ -106,7 +106,7 @@ FILE = Capabilities(rate_hz=(0.0, 10_000.0))
 
 
 class OpenCVSource:
-    """What OpenCV can capture from, behind :class:`core.acquire.source.FrameSource`.
+    """Camera, file or network stream of OpenCV as a :class:`core.acquire.source.FrameSource`.
 
     A camera or stream is read on a thread, so that the newest frames are there whenever they are asked for. OpenCV does
     not tell what a driver loses; `dropped` counts the frames that came and were not read in time. A video file is read
@@ -144,11 +144,11 @@ class OpenCVSource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """Rate, and of a camera exposure and gain; what OpenCV's driver really takes it says when it is told."""
+        """Rate, and of a camera exposure and gain; OpenCV's driver shows only when set which of them it takes."""
         return FILE if self._is_file else CAMERA
 
     def open(self) -> None:
-        """Open it; InputError says what to do when it cannot be opened."""
+        """Open the source; InputError says what to do when it cannot be opened."""
         self.close()
         capture = self._make(self._address)
         if not capture.isOpened():
@@ -172,14 +172,14 @@ class OpenCVSource:
         self._wanted = self._wanted.updated(settings)
 
     def prepare(self, step: Step) -> None:
-        """Ignored: a real camera sees whatever is in front of it."""
+        """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """A person must switch them."""
+        """Return False: the user must switch them."""
         return False
 
     def read(self, timeout_s: float) -> Frame | None:
-        """The next frame; Unplugged if there will be none, Ended at the end of a file."""
+        """Return the next frame; Unplugged if there will be none, Ended at the end of a file."""
         if self._is_file:
             return self._read_file(timeout_s)
         if self._grabber is None:
@@ -193,7 +193,7 @@ class OpenCVSource:
         return Frame(self._grey(raw), index, time_s, dropped)
 
     def close(self) -> None:
-        """Stop reading and let go of it."""
+        """Stop reading and release the source."""
         if self._grabber is not None:
             self._grabber.stop()
         elif self._capture is not None:

@@ -38,7 +38,7 @@ _LAYOUTS = {
 
 
 def readable(formats: Sequence[str]) -> tuple[str, ...]:
-    """Those of a camera's pixel formats that can be read, grey ones first, fewer bits first."""
+    """Select the pixel formats that can be read, grey ones first, fewer bits first."""
     return tuple(name for name in _LAYOUTS if name in formats)
 
 
@@ -48,7 +48,7 @@ def is_grey(name: str) -> bool:
 
 
 def decode(data: NDArray[Any], name: str, width: int, height: int, channel: Channel | None = None) -> Picture:
-    """Grey levels (height, width) of a buffer in the format `name`; 8 and 16 bit grey is the buffer itself.
+    """Decode grey levels (height, width) of a buffer in the format `name`; 8 and 16 bit grey is the buffer itself.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def decode(data: NDArray[Any], name: str, width: int, height: int, channel: Chan
 
 
 def full_range(grey: NDArray[Any], bits: int) -> Picture:
-    """Grey levels as they came with 8 or 16 bit; others spread over 16, white to white."""
+    """Spread grey levels over 16 bit, white to white; those of 8 or 16 bit stay as they are."""
     if bits in (8, 16):
         return grey
     wide = grey.astype(np.uint16)
