@@ -74,19 +74,19 @@ def _part(scenario: Scenario) -> Part:
 
 
 def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:
-    """The sensor of a scenario, exposed as is right for plates."""
+    """Make the sensor of a scenario with the exposure for plates."""
     effects = replace(scenario.sensor, brightness=1.0)
     return Sensor(rig.optics, scenario.bits, scenario.noise, effects=effects, seed=scenario.seed)
 
 
 def plane_plate(scenario: Scenario) -> tuple[Pattern, float]:
-    """The plane target of a scenario as it truly is, and how far its left and right edges are bent, in mm."""
+    """Make the true plane target of a scenario, and how far its left and right edges are bent, in mm."""
     plates = scenario.plates
     return scaled(printed(PLATES[scenario.plane_target]), plates.plane_scale), plates.plane_bow_mm
 
 
 class CalibrationPictures:
-    """The camera views and plane poses of one scenario, rendered one at a time."""
+    """Camera views and plane poses of one scenario, rendered one at a time."""
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._seed, self._bow_mm = scenario.seed, scenario.plates.camera_bow_mm
@@ -131,7 +131,7 @@ def _on_table(rig: Rig, outline: Array) -> Pose:
 
 
 class CheckPictures:
-    """The pictures of an interim check, rendered one pose at a time: held where the scanned parts will be."""
+    """Pictures of an interim check, rendered one pose at a time: held where the scanned parts will be."""
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._seed = scenario.seed

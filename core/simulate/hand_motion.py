@@ -28,7 +28,7 @@ INSTANTS = 5
 
 @dataclass(frozen=True, slots=True)
 class HandMotion:
-    """How the hand moves while a picture is taken.
+    """Motion of the hand while a picture is taken.
 
     Parameters
     ----------
@@ -49,11 +49,11 @@ class HandMotion:
 
     @property
     def seen(self) -> bool:
-        """Whether pictures show anything of it."""
+        """Whether pictures show the motion."""
         return (self.speed_mm_s > 0 or self.tremor_mm > 0) and (self.readout_s > 0 or self.exposure_s > 0)
 
     def sheets(self, sheet: Sheet, rows: int, heading: float, rng: np.random.Generator) -> tuple[Sheet, ...]:
-        """What a picture of so many `rows` sees of the laser at `sheet`, on its way to the right (+1) or the left (−1).
+        """Compute the sheets of light in a picture of so many `rows`, the hand on its way right (+1) or left (−1).
 
         Returns
         -------

@@ -135,7 +135,7 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 
 
 def scenario_rig(scenario: Scenario) -> Rig:
-    """The rig of a scenario."""
+    """Make the rig of a scenario."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
     rig = paper_rig(
         scenario.scale,
@@ -157,7 +157,7 @@ def scenario_rig(scenario: Scenario) -> Rig:
 
 
 def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> Picture:
-    """Picture number `index` of the fan alone, the object moved on by `travel_mm` each time about where it stands.
+    """Render picture number `index` of the fan alone, the object moved on by `travel_mm` each time.
 
     A moved object shows other speckle; of one that stands still only the camera's noise is new.
     """
@@ -170,7 +170,7 @@ def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> P
 
 
 def changed_rig(scenario: Scenario, rig: Rig) -> Rig:
-    """The rig at the time of the scan: as calibrated but for what has changed since."""
+    """Make the rig at the time of the scan: as calibrated but for what has changed since."""
     focal_ppm = scenario.warming.focal_ppm
     if not scenario.turned_urad and not scenario.drifted_px and not focal_ppm:
         return rig
@@ -189,7 +189,7 @@ def _drifted(rig: Rig, drift_px: float) -> Rig:
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:
-    """Stage, sheets of light of each frame, and true figures of a scenario, to render without any disk.
+    """Make stage, sheets of light of each frame, and true figures of a scenario, to render without any disk.
 
     >>> stage, sheets, _ = scan_of(Scenario(scale=0.1, frames=3))
     >>> stage.frame(0, sheets[0]).shape
@@ -206,7 +206,7 @@ def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list
 
 
 def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
-    """The stage from the frame on at which something moves; None if nothing does."""
+    """Make the stage from the frame on at which something moves; None if nothing does."""
     if not (scenario.lifted_mm or scenario.pushed_mm or scenario.table_mm or scenario.bumped_px):
         return None
     scene, _ = build_scene(scenario)
@@ -218,7 +218,7 @@ def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
 
 
 def moving_sheets(scenario: Scenario, sheets: Sequence[Sheet]) -> list[tuple[Sheet, ...]]:
-    """What the picture of each frame sees of the hand-held laser at `sheets`: more than that one if the hand moves."""
+    """Compute the sheets of light in the picture of each frame; several for each of `sheets` if the hand moves."""
     motion = HandMotion(scenario.hand_mm_s, scenario.tremor_mm, scenario.readout_ms / 1000, scenario.exposure_ms / 1000)
     if not motion.seen:
         return [(sheet,) for sheet in sheets]

@@ -66,17 +66,17 @@ class Optics:
     black_level_grey: float = 5.0
 
     def blur_px(self, scale: float) -> float:
-        """Gaussian σ of lens and pixel in pixels of a picture at `scale`, without the pixel's own area."""
+        """Compute the Gaussian σ of lens and pixel in px of a picture at `scale`, without the pixel's own area."""
         return float(np.hypot(self.lens_blur_px * scale, self.pixel_blur_px))
 
     def grain_px(self, scale: float) -> float:
-        """Speckle grain in pixels of a picture at `scale`; no grain is finer than its pixel."""
+        """Compute the speckle grain in px of a picture at `scale`; no grain is finer than its pixel."""
         return float(np.hypot(self.speckle_grain_px * scale, 1.0))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Beam:
-    """A line laser's sheet of light: Gaussian across, focused at one distance, falling off along its fan angle.
+    """Sheet of light of a line laser: Gaussian across, focused at one distance, falling off along its fan angle.
 
     Parameters
     ----------
@@ -143,7 +143,10 @@ class Rig:
 
 
 def published_fan() -> Fan:
-    """Make the three planes of eq. (6) as printed but for the sign: angles 4.929° and 4.919°, not quite one pencil."""
+    """Make the three light planes of the paper's eq. (6), as printed but for the sign.
+
+    Their angles are 4.929° and 4.919°, not quite one pencil.
+    """
     return Fan(tuple(LightPlane(-np.array(row) / 1000.0) for row in PUBLISHED_COEFFICIENTS))
 
 

@@ -38,7 +38,7 @@ def simulated_project(name: str) -> Project:
 
 
 def sample_folder() -> Path:
-    """Folder in which the sample's recording set is kept, once it is rendered."""
+    """Return the folder of the sample's recording set, rendered or not."""
     return Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(sample_scenario())}"
 
 

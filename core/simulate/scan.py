@@ -38,7 +38,7 @@ LEAST_FACTOR, LARGEST_FACTOR = 0.2, 1.6
 
 @dataclass(frozen=True, slots=True)
 class StageEffects:
-    """What else happens in a scan.
+    """Further effects in a scan.
 
     `mirror_share` of the lasers' light is mirrored by flat sides of the objects; `frames` is how many pictures are
     taken, over which the rig warms; `readout_s` the time from the first row of a picture to the last. `transport` says
@@ -54,7 +54,7 @@ class StageEffects:
     transport: Transport = ONE_WAY
 
     def over(self, index: int) -> float:
-        """Share of the scan that is over at frame `index`; the reference, −1, is its beginning."""
+        """Compute the share of the scan that is over at frame `index`; the reference, −1, is its beginning."""
         return (index + 1) / max(self.frames, 1)
 
 
@@ -62,7 +62,7 @@ STILL = StageEffects()
 
 
 class ScanStage:
-    """Renders a still scene before a rig; what does not change from frame to frame is computed once.
+    """Renderer of a still scene before a rig; what does not change from frame to frame is computed once.
 
     Parameters
     ----------
@@ -105,23 +105,26 @@ class ScanStage:
         self._still = self._room_light + self._fan_light
 
     def reference(self) -> Picture:
-        """The picture with the hand-held laser off: room light and fan."""
+        """Render the picture with the hand-held laser off: room light and fan."""
         return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
-        """Frame number `index`, the hand-held laser at one sheet, or at several in the course of the exposure."""
+        """Render frame number `index`, with the hand-held laser at one sheet.
+
+        At several in the course of the exposure.
+        """
         rng = generator(self.seed, "frame", index)
         return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor, self._hidden_by_hand(sheets))
 
     def further_references(self) -> dict[int, Picture]:
-        """As `reference`, in the sensor's further exposures, by their number."""
+        """Render the reference in the sensor's further exposures, by their number."""
         return {
             number: self._taken(self._still, -1, generator(self.seed, f"reference@{number}"), sensor)
             for number, sensor in self.sensor.further.items()
         }
 
     def further_frames(self, index: int, *sheets: Sheet) -> dict[int, Picture]:
-        """As `frame`, of the same light in the sensor's further exposures, by their number."""
+        """Render a frame with the same light in the sensor's further exposures, by their number."""
         if not self.sensor.further:
             return {}
         light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))
@@ -156,7 +159,7 @@ class ScanStage:
 
     @property
     def room_light(self) -> Map:
-        """The room's light (h, w) alone, in grey levels: all lasers off."""
+        """Light (h, w) of the room alone, in grey levels: all lasers off."""
         return self._room_light
 
     @property
@@ -165,7 +168,10 @@ class ScanStage:
         return self._still
 
     def lit_by(self, *sheets: Sheet, rng: np.random.Generator, fan: bool = True) -> Map:
-        """Light (h, w) in grey levels, the mean with the hand-held laser at `sheets`; `rng` chooses its speckle."""
+        """Compute light (h, w) in grey levels, the mean with the hand-held laser at `sheets`.
+
+        `rng` chooses its speckle.
+        """
         light = self._sheets_light(sheets)
         if len(sheets) > 1:
             light /= len(sheets)

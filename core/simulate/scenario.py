@@ -241,12 +241,12 @@ class Scenario:
 
     @property
     def key(self) -> str:
-        """A short hash of everything in the scenario."""
+        """Short hash of everything in the scenario."""
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
 
     @classmethod
     def from_toml(cls, text: str, where: Path | str = "scenario") -> Scenario:
-        """A scenario from TOML, keys as the fields.
+        """Read a scenario from TOML, keys as the fields.
 
         Raises
         ------
@@ -257,7 +257,7 @@ class Scenario:
 
     @classmethod
     def read(cls, path: Path) -> Scenario:
-        """A scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
+        """Read a scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
         return cls.from_toml(read_text(path, most=TOML_BYTES), path)
 
 

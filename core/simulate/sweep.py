@@ -74,7 +74,7 @@ class HandCourse:
     aims: Array
 
     def sheets(self, rig: Rig) -> list[Sheet]:
-        """The sheet of light at each instant, in the camera frame."""
+        """Compute the sheet of light at each instant, in the camera frame."""
         emitters = np.column_stack(
             [
                 self.side * self.baseline * np.cos(self.tilt) + 5 * self.sway,
@@ -115,7 +115,7 @@ def hand_sweeps(
 
 
 def headings_of(frames: int) -> Array:
-    """(N,) of each frame of a scan: +1 where the stripe goes to the right, −1 where to the left."""
+    """Return for each frame of a scan (N,) +1 where the stripe goes to the right, −1 where to the left."""
     return np.where(_passes(frames) % 2 == 0, 1.0, -1.0)
 
 

@@ -57,7 +57,7 @@ class _Content(ResultFile):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Truth:
-    """Truth of a simulated set: what was rendered.
+    """Truth of a simulated set: the figures that were rendered.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Truth:
 
 
 def truth_folder(set_folder: Path) -> Path:
-    """Folder of the truth of the set in `set_folder`: SET.truth beside SET."""
+    """Return the folder of the truth of the set in `set_folder`: SET.truth beside SET."""
     return set_folder.with_name(set_folder.name + ".truth")
 
 

@@ -14,7 +14,7 @@ from core.simulate.scene.laser import Sheet
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Turn:
-    """A rotation (3, 3) about the line along z through a point (3,) in mm."""
+    """Rotation (3, 3) about the line along z through a point (3,) in mm."""
 
     rotation: Array
     through: Array

@@ -24,7 +24,7 @@ TAIL = 5
 
 @dataclass(frozen=True, slots=True)
 class LensEffects:
-    """What a lens does beyond an even blur and the distortion k1, k2, p1, p2.
+    """Effects of a lens beyond an even blur and the distortion k1, k2, p1, p2.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ class LensEffects:
         )
 
     def seen_by(self, camera: Camera) -> Camera:
-        """The camera with this lens's third coefficient."""
+        """Add this lens's third radial coefficient to the camera."""
         if not self.k3:
             return camera
         k1, k2, p1, p2, k3 = camera.distortion
         return Camera(camera.image_size, camera.matrix, np.array([k1, k2, p1, p2, k3 + self.k3]))
 
     def image(self, light: Map, blur_px: float, camera: Camera, depth: Map, scale: float) -> Map:
-        """Light (h, w) of points at `depth` (h, w) in mm as the lens shows it; σ is `blur_px` where it is in focus."""
+        """Image light (h, w) of points at `depth` (h, w) in mm through the lens; σ is `blur_px` in focus."""
         shown = self._focused(light, blur_px, float(camera.matrix[0, 0]), depth)
         return self._with_tails(shown, camera, self.coma_px * scale) if self.coma_px else shown
 

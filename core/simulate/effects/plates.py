@@ -9,7 +9,7 @@ from core.simulate.effects.ranges import require_ranges
 
 @dataclass(frozen=True, slots=True)
 class PlateEffects:
-    """How plates differ from what rig.toml says of them.
+    """Differences of plates from what rig.toml states of them.
 
     Parameters
     ----------

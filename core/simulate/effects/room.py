@@ -22,7 +22,7 @@ SHADOW_COURSE = 17.0
 
 @dataclass(frozen=True, slots=True)
 class RoomEffects:
-    """How the room's light changes within a scan.
+    """Changes of the room's light within a scan.
 
     Parameters
     ----------
@@ -58,7 +58,10 @@ class RoomEffects:
         )
 
     def added(self, index: int, shape: tuple[int, ...], readout_s: float, rng: np.random.Generator) -> Map | None:
-        """Added light in frame `index` (−1: the reference) as a share of the light (h or 1, w or 1); None: nothing."""
+        """Compute the added light in frame `index` (−1: the reference) as a share of the light.
+
+        (h or 1, w or 1), or None.
+        """
         factor = np.ones((1, 1))
         if self.flicker:
             rows = np.arange(shape[0]) / shape[0] if readout_s else np.zeros(1)

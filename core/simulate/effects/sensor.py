@@ -22,7 +22,7 @@ FULL_GREY = 255.0
 
 @dataclass(frozen=True, slots=True)
 class SensorEffects:
-    """What a sensor does beyond noise, and what becomes of its pictures.
+    """Effects of a sensor beyond noise, and of the files of its pictures.
 
     Parameters
     ----------
@@ -81,7 +81,10 @@ class SensorEffects:
         )
 
     def collected(self, light: Map, room: Map | None, black: float) -> Map:
-        """Light (h, w) at each site before noise; `room` (h, w) is the share of it that is white, the rest is red."""
+        """Compute the light (h, w) at each site before noise.
+
+        `room` (h, w) is the white share of it, the rest is red.
+        """
         if self.colour:
             white = np.zeros_like(light) if room is None else room
             light = white + (light - white) * _response(light.shape)
@@ -94,7 +97,7 @@ class SensorEffects:
         return light
 
     def with_hot_pixels(self, light: Map, rng: np.random.Generator) -> Map:
-        """Light (h, w) with the dark current of hot pixels, the same ones wherever `rng` begins in the same way."""
+        """Add the dark current of hot pixels to light (h, w), the same ones wherever `rng` begins in the same way."""
         if not self.hot_share:
             return light
         hot = rng.random(light.shape, dtype=np.float32) < self.hot_share
@@ -103,7 +106,7 @@ class SensorEffects:
         return light
 
     def developed(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """The picture (h, w) as it is kept: (h, w, 3) blue, green, red from a mosaic."""
+        """Develop the picture (h, w) for its file: (h, w, 3) blue, green, red from a mosaic."""
         if not self.colour or self.raw:
             return picture
         return np.asarray(cv2.cvtColor(picture, cv2.COLOR_BayerRGGB2BGR), dtype=picture.dtype)  # type: ignore[return-value]
@@ -114,7 +117,7 @@ class SensorEffects:
         return ".jpg" if self.jpeg_quality else ".png"
 
     def file_of(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
-        """What the file of a picture (h, w) or (h, w, 3) holds."""
+        """Encode the file of a picture (h, w) or (h, w, 3)."""
         settings = [cv2.IMWRITE_JPEG_QUALITY, self.jpeg_quality]
         settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
         done, data = cv2.imencode(self.suffix, picture, settings if self.jpeg_quality else [])

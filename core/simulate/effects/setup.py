@@ -9,7 +9,7 @@ from core.simulate.effects.ranges import require_ranges
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """How rig, table and hand are turned, beside their usual places.
+    """Turns of rig, table and hand beside their default places.
 
     Parameters
     ----------

@@ -9,7 +9,8 @@ from core.simulate.effects.ranges import require_ranges
 
 @dataclass(frozen=True, slots=True)
 class Transport:
-    """What light does in a path tracer, and in a workshop, beyond a single way. All is off where nothing is stated.
+    """Effects of light on its way, as in a path tracer and in a workshop, beyond one reflection. All is off where
+    nothing is stated.
 
     That a laser's light falls with distance and with the cosine of incidence, and that its sheet is wider where it
     meets a surface obliquely, is in every picture (`core.simulate.scene.laser`).

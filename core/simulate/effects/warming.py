@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """What warmth does to camera and laser, beside `Scenario.drifted_px` and `turned_urad`.
+    """Effects of warmth on camera and laser, beside `Scenario.drifted_px` and `turned_urad`.
 
     What happens within the scan grows evenly from the reference to the last frame.
 
@@ -56,7 +56,7 @@ class Warming:
         )
 
     def at(self, share: float, light: Map, camera: Camera) -> Map:
-        """Light (h, w) as the camera shows it when `share` of the scan is over."""
+        """Image light (h, w) as the camera shows it when `share` of the scan is over."""
         if not share or not (self.scan_px or self.scan_focal_ppm):
             return light
         from scipy.ndimage import affine_transform  # here: the command line reads scenarios, and --help needs no scipy

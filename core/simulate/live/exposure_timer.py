@@ -10,7 +10,7 @@ RATE_HZ = 12.0
 
 
 class ExposureTimer:
-    """Counts the exposures of a camera.
+    """Counter of the exposures of a camera.
 
     It has a time of its own, that goes on by 1/12 s with each frame that is delivered, and no faster than the clock:
     where machine or reader are slow, so is that time, and nothing is missed. With a rate of 0 it goes on as fast as
@@ -48,29 +48,29 @@ class ExposureTimer:
 
     @property
     def is_paced(self) -> bool:
-        """Whether its time is the clock's."""
+        """Whether its time follows the clock."""
         return self._paced
 
     def now(self) -> float:
-        """The time in s since the start."""
+        """Return the time in s since the start."""
         return self._clock() - self._origin if self._paced else self.time_of(self._delivered + 1)
 
     def time_of(self, number: int) -> float:
-        """Time of exposure `number`, in s since the start."""
+        """Compute the time of exposure `number`, in s since the start."""
         return self._base_s + (number - self._base_number) / self._rate
 
     def wait_s(self) -> float:
-        """Time in s to the next exposure; 0 or less if it is due."""
+        """Compute the time in s to the next exposure; 0 or less if it is due."""
         if self._paced:
             return self.time_of(self._last + 1) - self.now()
         return 0.0 if self._hurried else self._exposed_at + 1 / self._rate - self._clock()
 
     def late_s(self) -> float:
-        """By how much in s the clock is ahead of this time since the last exposure, where this time waits."""
+        """Compute how many s the clock is ahead of this time since the last exposure, where this time waits."""
         return 0.0 if self._paced or self._hurried or self._forgiven else max(0.0, -self.wait_s())
 
     def expose(self) -> tuple[int, int]:
-        """The number of the exposure that is due, and how many were missed since the last one."""
+        """Count the exposure that is due; returns its number, and how many were missed since the last one."""
         number = self._last + 1
         if self._paced:
             due = self._base_number + floor((self.now() - self._base_s) * self._rate)
@@ -80,7 +80,7 @@ class ExposureTimer:
         return number, lost
 
     def delivered(self) -> None:
-        """The last exposure has reached its reader."""
+        """Record that the last exposure has reached its reader."""
         self._delivered = self._last
 
     def skip(self) -> None:

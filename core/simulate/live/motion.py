@@ -29,7 +29,7 @@ PASSES, KNOTS = 32, 12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlateMotion:
-    """A plate that rests at each of its poses and is moved smoothly from one to the next, for ever.
+    """Motion of a plate that rests at each of its poses and is moved smoothly from one to the next, for ever.
 
     Parameters
     ----------
@@ -47,7 +47,10 @@ class PlateMotion:
     move_s: float
 
     def at(self, time_s: float) -> tuple[Pose, int | None]:
-        """The pose at a time from the beginning of the first rest, and the number of the rest, or None in a move."""
+        """Return the pose at a time from the beginning of the first rest, and the number of the rest.
+
+        None in a move.
+        """
         number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
         rest = int(number) % len(self.poses)
         if within <= self.rest_s:
@@ -57,12 +60,12 @@ class PlateMotion:
         return self._between(self.poses[rest], self.poses[(rest + 1) % len(self.poses)], eased), None
 
     def rest_at(self, time_s: float) -> int | None:
-        """How many rests there have been before that of this time; None in a move."""
+        """Count the rests before that of this time; None in a move."""
         number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
         return int(number) if within <= self.rest_s else None
 
     def end_of_rest(self, number: int) -> float:
-        """The last time in s at which the plate rests at its pose `number`, counted from 0."""
+        """Compute the last time in s at which the plate rests at its pose `number`, counted from 0."""
         return number * (self.rest_s + self.move_s) + (1 - 1e-9) * self.rest_s
 
     def _between(self, first: Pose, second: Pose, share: float) -> Pose:
@@ -73,7 +76,7 @@ class PlateMotion:
 
 
 class HandPath:
-    """The hand-held laser at any time: :func:`core.simulate.sweep.hand_course` joined up smoothly.
+    """Path of the hand-held laser at any time: :func:`core.simulate.sweep.hand_course` joined up smoothly.
 
     Between two passes from different sides the laser is taken round above the camera, so that at every moment its
     light is a sheet the camera can measure with. After PASSES passes it begins again.
@@ -103,7 +106,7 @@ class HandPath:
         self._held = PchipInterpolator(times, held)
 
     def sheet(self, time_s: float) -> Sheet:
-        """The sheet of light at a time from the beginning of the first pass, in the camera frame."""
+        """Return the sheet of light at a time from the beginning of the first pass, in the camera frame."""
         tilt, baseline, sway, nearness, *aim = np.asarray(self._held(time_s % self._period))[:, None]
         course = HandCourse(np.zeros(1, np.intp), tilt, np.ones(1), baseline, sway, nearness, np.transpose(aim))
         return course.sheets(self._rig)[0]

@@ -73,7 +73,7 @@ class Moment:
 
 
 class LiveScene:
-    """Renders the pictures of the simulated rig.
+    """Renderer of the pictures of the simulated rig.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class LiveScene:
         return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
 
     def motion(self, step: Step) -> PlateMotion | None:
-        """How the plate of this step is moved; None where there is no plate."""
+        """Return the motion of the plate in this step; None where there is no plate."""
         return self._motions.get(step)
 
     def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:

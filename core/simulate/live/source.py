@@ -97,7 +97,7 @@ class _Hand:
 
 
 class SimulatedSource:
-    """The simulated rig behind :class:`core.acquire.source.FrameSource`.
+    """Simulated rig as a :class:`core.acquire.source.FrameSource`.
 
     With a rate of 0 every frame is there as soon as it can be made, 1/12 s after the last one, and the same calls give
     the same pictures.
@@ -139,7 +139,7 @@ class SimulatedSource:
         return self._scene.truth
 
     def open(self) -> None:
-        """Begin to expose; opened anew, time and counting begin anew."""
+        """Start exposing; opened anew, time and counting begin anew."""
         self.close()
         with self._changed:
             self._stopping, self._problem = False, None
@@ -151,7 +151,10 @@ class SimulatedSource:
         self._thread.start()
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set exposure (usual: 8 ms), gain (usual: 0 dB) and rate (usual: up to 12 Hz; 0: as fast as it is read)."""
+        """Set exposure (default: 8 ms), gain (default: 0 dB) and rate (default: up to 12 Hz.
+
+        0: as fast as it is read).
+        """
         CAPABILITIES.check(settings, self.name)
         with self._changed:
             if settings.exposure_ms is not None:
@@ -171,7 +174,7 @@ class SimulatedSource:
             self._ordered()
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Switch them; the hand goes on where it stopped. Always True."""
+        """Switch the lasers; the hand goes on where it stopped. Always True."""
         with self._changed:
             self._state = self._state.lit(lasers, self._timer.now())
             self._ordered()
@@ -179,16 +182,16 @@ class SimulatedSource:
 
     @property
     def waits(self) -> bool:
-        """Whether the next frame waits until it is read: at a rate that was set it does not."""
+        """Whether the next frame waits until it is read: not at a rate that was set."""
         return not self._timer.is_paced
 
     def go_on(self, frame: Frame) -> None:
-        """Hold the plate's pose in a frame no longer than its rest: it was taken, or is of no use."""
+        """End the wait for a plate's pose beyond its rest: its frame was taken, or is useless."""
         with self._changed:
             self._hand.go_on(frame.index)
 
     def read(self, timeout_s: float) -> Frame | None:
-        """The next frame, exposed after the last order was given; None if there is none within the time."""
+        """Return the next frame, exposed after the last command; None if there is none within the time."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting is not None or self._problem is not None, timeout_s)
             if self._problem is not None:

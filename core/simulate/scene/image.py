@@ -28,7 +28,7 @@ def generator(seed: int, kind: str, index: int = 0) -> np.random.Generator:
 
 
 class NoiseTile:
-    """Normal random numbers drawn once, of which each picture sees its own part: for pictures in real time.
+    """Tile of normal random numbers drawn once; each picture uses its own part, for pictures in real time.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class NoiseTile:
         self._tile = rng.standard_normal((shape[0] + NOISE_PLACES, shape[1] + NOISE_PLACES), dtype=np.float32)
 
     def at(self, shape: tuple[int, ...], rng: np.random.Generator) -> Map:
-        """Noise (height, width) of one picture whose place in the tile, and whose sides, `rng` chooses."""
+        """Return the noise (height, width) of one picture; `rng` chooses its place in the tile, and its sides."""
         down, right = rng.integers(0, NOISE_PLACES, 2)
         flip, mirror = 1 - 2 * rng.integers(0, 2, 2)
         part: Map = self._tile[down : down + shape[0], right : right + shape[1]][::flip, ::mirror]
@@ -110,7 +110,7 @@ class Sensor:
 
     @property
     def further(self) -> dict[int, Sensor]:
-        """The same, exposed as long as the second and third picture of each, by their number."""
+        """Sensors of the second and third exposure of each picture, by their number."""
         factors = {2: self.effects.second_exposure, 3: self.effects.third_exposure}
         return {n: replace(self, exposure=self.exposure / factor) for n, factor in factors.items() if factor}
 

@@ -44,7 +44,7 @@ BOW_SEEN_TO = 0.6
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sheet:
-    """One sheet of laser light: its plane, its emitter (3,) on that plane in mm, its axis (3,) and its beam.
+    """Sheet of laser light: its plane, its emitter (3,) on that plane in mm, its axis (3,) and its beam.
 
     `rows` (height, 4) is for a laser that moves while the camera reads its rows out: unit normal and distance in mm of
     the plane that each row of the picture sees; `plane` then is that of the middle row.
@@ -65,7 +65,7 @@ class Sheet:
         set_field(self, "axis", frozen_array(axis / np.linalg.norm(axis), (3,), "axis"))
 
     def off_light(self, points: Array, row: NDArray[np.intp]) -> Array:
-        """Signed distances (N,) in mm of `points` (N, 3), seen in these rows, from the middle of the light."""
+        """Compute signed distances (N,) in mm of `points` (N, 3), seen in these rows, from the middle of the light."""
         if self.rows is not None:
             return np.asarray((points * self.rows[row, :3]).sum(axis=1) - self.rows[row, 3], dtype=np.float64)
         off = self.plane.distances(points)

@@ -29,14 +29,17 @@ _BEFORE_MM = 0.05
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mirror:
-    """A plane face: outward unit `normal` (3,), its distance from the origin in mm, and `triangles` (T, 3, 3)."""
+    """Plane mirroring face.
+
+    Outward unit `normal` (3,), its distance from the origin in mm, and `triangles` (T, 3, 3).
+    """
 
     normal: Array
     distance: float
     triangles: Array
 
     def image(self, sheet: Sheet) -> Sheet | None:
-        """The sheet as the mirror shows it; None if its emitter is behind the mirror."""
+        """Reflect the sheet in the mirror; None if its emitter is behind the mirror."""
         off = float(self.normal @ sheet.emitter) - self.distance
         if off <= 0:
             return None
@@ -47,7 +50,7 @@ class Mirror:
         return Sheet(LightPlane(normal / (normal @ emitter)), emitter, axis, beam)
 
     def passes(self, emitter: Array, points: Array) -> NDArray[np.bool_]:
-        """Whether light from the mirrored `emitter` (3,) reaches points (N, 3) before the mirror through its face."""
+        """Mask (N,) of points (N, 3) that light from the mirrored `emitter` (3,) reaches through the mirror's face."""
         before = points @ self.normal - self.distance
         share = -(emitter @ self.normal - self.distance) / (before - (emitter @ self.normal - self.distance))
         through = emitter + share[:, None] * (points - emitter)
@@ -62,7 +65,7 @@ class Mirror:
 
 
 def mirrors_of(scene: Scene) -> tuple[Mirror, ...]:
-    """The plane faces of a scene's meshes that are large enough to be mirrors."""
+    """Find the plane faces of a scene's meshes that are large enough to be mirrors."""
     found: list[Mirror] = []
     for mesh in scene.meshes:
         triangles = mesh.triangles

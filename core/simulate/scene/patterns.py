@@ -20,7 +20,7 @@ from core.simulate.rays import Map
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pattern:
-    """A printed plate in its own frame (mm, z = 0 on its face, z pointing into the plate, away from the camera).
+    """Printed plate in its own frame (mm, z = 0 on its face, z pointing into the plate, away from the camera).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Pattern:
 
     @property
     def outline(self) -> Array:
-        """The plate's corners (4, 3) in mm, in order round it."""
+        """Corners (4, 3) of the plate in mm, in order round it."""
         (x0, x1), (y0, y1) = self.x_edges[[0, -1]], self.y_edges[[0, -1]]
         return np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]])
 

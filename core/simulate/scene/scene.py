@@ -23,7 +23,7 @@ TILE = 16
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What the objects' surface does with light beyond sending it back evenly.
+    """Reflection of the objects' surface beyond an even one.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ MATT = Material()
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
-    """Triangles (T, 3, 3) in mm, corners counter-clockwise seen from outside.
+    """Mesh of triangles (T, 3, 3) in mm, corners counter-clockwise seen from outside.
 
     With `normals` (T, 3, 3), one unit vector a corner, shading is smooth over the faces; without, each is flat.
     """
@@ -76,7 +76,7 @@ class Mesh:
             set_field(self, "normals", frozen_array(self.normals, (len(self.triangles), 3, 3), "normals"))
 
     def moved(self, pose: Pose) -> Mesh:
-        """The mesh in the frame that `pose` leads to."""
+        """Transform the mesh to the frame that `pose` leads to."""
         triangles = pose.apply(self.triangles.reshape(-1, 3)).reshape(-1, 3, 3)
         normals = None if self.normals is None else self.normals @ pose.rotation.T
         return Mesh(triangles, self.albedo, normals)
@@ -84,7 +84,7 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sphere:
-    """A ball: centre (3,) and radius in mm."""
+    """Ball with centre (3,) and radius in mm."""
 
     centre: Array
     radius: float
@@ -94,7 +94,7 @@ class Sphere:
         set_field(self, "centre", frozen_array(self.centre, (3,), "centre"))
 
     def moved(self, pose: Pose) -> Sphere:
-        """The ball in the frame that `pose` leads to."""
+        """Transform the ball to the frame that `pose` leads to."""
         return Sphere(pose.apply(self.centre[None])[0], self.radius, self.albedo)
 
 
@@ -127,7 +127,7 @@ class Scene:
         return cls(pose_cam_table, meshes, spheres, table_albedo, material)
 
     def moved(self, motion: Pose, *, with_table: bool = False) -> Scene:
-        """The scene with its objects moved by `motion` in the camera frame, with or without the table."""
+        """Move the objects of the scene by `motion` in the camera frame, with or without the table."""
         table = self.pose_cam_table
         if with_table and table is not None:
             table = Pose(motion.rotation @ table.rotation, motion.apply(table.translation[None])[0])
@@ -137,7 +137,7 @@ class Scene:
 
     @property
     def occluders(self) -> Array:
-        """All triangles (T, 3, 3) that can cast a shadow; the table is below everything and casts none."""
+        """Triangles (T, 3, 3) that can cast a shadow; the table is below everything and casts none."""
         if not self.meshes:
             return np.empty((0, 3, 3))
         return np.concatenate([mesh.triangles for mesh in self.meshes])
@@ -145,7 +145,7 @@ class Scene:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfaceMaps:
-    """What each pixel sees, float32: point (h, w, 3) in mm, outward unit normal (h, w, 3), albedo (h, w).
+    """Maps of the surface in each pixel, float32: point (h, w, 3) in mm, outward unit normal (h, w, 3), albedo (h, w).
 
     A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen. `tiles` is filled in:
     smallest and largest coordinates (2, rows, columns, 3) in mm within each tile of TILE × TILE pixels, so that what is

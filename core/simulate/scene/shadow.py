@@ -38,7 +38,7 @@ class ShadowCaster(NamedTuple):
 
     @classmethod
     def near_plane(cls, scene: Scene, plane: LightPlane, emitter: Array, axis: Array, reach: float) -> ShadowCaster:
-        """The occluders of `scene` within `reach` mm of `plane`, seen from `emitter` (3,) on it."""
+        """Select the occluders of `scene` within `reach` mm of `plane`, seen from `emitter` (3,) on it."""
         triangles = scene.occluders
         off = triangles @ plane.normal - plane.d_mm
         triangles = triangles[(off.min(axis=1) <= reach) & (off.max(axis=1) >= -reach)]

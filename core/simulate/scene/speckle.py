@@ -19,7 +19,7 @@ TILE = 1024
 
 
 class Speckle:
-    """A tile of speckle, and views of it.
+    """Tile of speckle, and views of it.
 
     Parameters
     ----------
@@ -40,7 +40,10 @@ class Speckle:
         self._tile: Map = np.exp(spread * smooth - spread**2 / 2).astype(np.float32)
 
     def at(self, rows: NDArray[np.intp], columns: NDArray[np.intp], rng: np.random.Generator) -> Map:
-        """The factor at pixels (rows, columns), both (N,), of one picture whose place in the tile `rng` chooses."""
+        """Return the factor at pixels (rows, columns), both (N,), of one picture.
+
+        `rng` chooses its place in the tile.
+        """
         down, right = rng.integers(0, TILE, 2)
         flip, mirror, turn = rng.integers(0, 2, 3)
         i = (down + (1 - 2 * flip) * rows) % TILE

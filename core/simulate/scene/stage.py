@@ -30,7 +30,7 @@ SPHERE_BACK_MM = 3.0
 
 
 def table_pose(setup: Setup = USUAL_SETUP) -> Pose:
-    """Pose of the table: under the work point, z towards the camera, tilted and turned by a few degrees."""
+    """Make the pose of the table: under the work point, z towards the camera, tilted and turned by a few degrees."""
     facing = Rotation.from_rotvec([np.pi, 0.0, 0.0])
     tilt = Rotation.from_euler("xyz", TABLE_TILT_DEG, degrees=True)
     further = Rotation.from_euler("xy", (setup.table_right_deg, setup.table_away_deg), degrees=True)

@@ -28,18 +28,18 @@ NEAREST_MM, FARTHEST_MM = 430.0, 620.0
 
 
 def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Map, Map]:
-    """Points (h, w, 3) seen on a plate, and the room's light it sends back (h, w); white head-on gives `grey`."""
+    """Compute points (h, w, 3) on a plate, and the room's light it reflects (h, w); white head-on gives `grey`."""
     points, albedo = draw_pattern(pattern, pose, rays)
     return points, albedo * room_shade(pose, grey)
 
 
 def room_shade(pose: Pose, grey: float) -> np.float32:
-    """Grey level of a white plate in the room's light, `grey` if it faces the camera."""
+    """Compute the grey level of a white plate in the room's light, `grey` if it faces the camera."""
     return np.float32(grey * (DIFFUSE_SHARE + FRONT_SHARE * abs(pose.rotation[2, 2])))
 
 
 class RenderContext(NamedTuple):
-    """What rendering needs: the rig, the rays of its camera's pixels (h, w, 2), the sensor, and what the lens does."""
+    """Rig, rays of its camera's pixels (h, w, 2), sensor and lens effects for rendering."""
 
     rig: Rig
     rays: Map
@@ -47,7 +47,7 @@ class RenderContext(NamedTuple):
     lens: LensEffects = IDEAL_LENS
 
     def image(self, light: Map, points: Map) -> Map:
-        """Light (h, w) of points (h, w, 3) in mm as the lens shows it."""
+        """Image light (h, w) of points (h, w, 3) in mm through the lens."""
         rig = self.rig
         return self.lens.image(light, rig.blur_px, rig.camera, points[..., 2], rig.scale)
 
@@ -55,7 +55,7 @@ class RenderContext(NamedTuple):
 def camera_picture(
     context: RenderContext, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator, bow_mm: float = 0.0
 ) -> Picture:
-    """One view of a target with the lasers off; `grey` is the level of a white plate that faces the camera.
+    """Render one view of a target with the lasers off; `grey` is the level of a white plate that faces the camera.
 
     The target's left and right edges are bent by `bow_mm` out of its plane.
     """
@@ -68,7 +68,9 @@ def camera_picture(
 def plane_pictures(
     context: RenderContext, plate: tuple[Pattern, float], pose: Pose, grey: float, seed: int, index: int
 ) -> dict[str, Picture]:
-    """The pictures of pose `index` of the plane target by the ending of their names: with the fan on, "", and "_off".
+    """Render the pictures of pose `index` of the plane target, by the ending of their names.
+
+    With the fan on it is "", else "_off".
 
     The `plate` is its pattern, and by how many mm its left and right edges are bent out of its plane. A sensor that
     takes further pictures adds those, "@2" and "_off@2" and the like.
@@ -92,12 +94,12 @@ def plane_pictures(
 
 
 def fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
-    """The fan's light (h, w) on a plate, as the lens shows it, before speckle."""
+    """Compute the fan's light (h, w) on a plate through the lens, before speckle."""
     return blurred(bare_fan_light(rig, points, albedo, pose), rig.blur_px)
 
 
 def bare_fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
-    """The fan's light (h, w) on a plate before lens and speckle."""
+    """Compute the fan's light (h, w) on a plate before lens and speckle."""
     normals = np.broadcast_to((-pose.rotation[:, 2]).astype(np.float32), points.shape)
     maps = SurfaceMaps(points, normals, albedo)
     fan = np.zeros(albedo.shape, np.float32)
@@ -107,7 +109,7 @@ def bare_fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
 
 
 def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
-    """Laser light with a speckle pattern of its own; `rng` chooses which."""
+    """Multiply laser light by a speckle pattern of its own; `rng` chooses which."""
     if rig.optics.speckle_contrast <= 0:
         return light
     speckle = Speckle(rig.optics.speckle_contrast, rig.grain_px, rng)

@@ -28,7 +28,7 @@ FARTHEST_PATHS = 12.0
 
 
 class Walk(NamedTuple):
-    """Photons that come out again.
+    """Photons that come out of scattering matter again.
 
     `depth` (K,) and `aside` (K,) are h and s in free paths, s along one direction of the surface, each with its mirror
     image; `weight` (K,) is what each brings, together `share` of the light that entered.
@@ -42,7 +42,7 @@ class Walk(NamedTuple):
 
 @cache
 def walk(albedo: float) -> Walk:
-    """The photons of matter with this albedo."""
+    """Simulate the photons in matter with this albedo."""
     rng = np.random.default_rng(20_010)
     first = rng.exponential(size=FOLLOWED)
     depth, aside = first.copy(), np.zeros(FOLLOWED)

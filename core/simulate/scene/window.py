@@ -22,7 +22,10 @@ CLEARANCE_MM = 0.05
 
 
 def window_places(towards: Array, half_angle: float) -> Array:
-    """Unit vectors (PLACES, 3) evenly over a disk of this half angle in rad about `towards` (3,): a sunflower's."""
+    """Spread unit vectors (PLACES, 3) evenly over a disk of this half angle in rad about `towards` (3,).
+
+    As in a sunflower.
+    """
     middle = towards / np.linalg.norm(towards)
     aside = np.cross(middle, [0.0, 0.0, 1.0] if abs(middle[2]) < 0.9 else [1.0, 0.0, 0.0])
     aside /= np.linalg.norm(aside)
@@ -35,7 +38,7 @@ def window_places(towards: Array, half_angle: float) -> Array:
 
 
 def window_seen(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
-    """Share (h, w) of the window at `places` (P, 3) that each pixel's point sees past the scene's objects."""
+    """Compute the share (h, w) of the window at `places` (P, 3) that each pixel's point sees past all objects."""
     hulls = [_hull(mesh.triangles) for mesh in scene.meshes]
     starts = np.cumsum([0, *map(len, hulls)]).astype(np.int64)
     planes = np.concatenate(hulls) if hulls else np.zeros((0, 4))
@@ -44,7 +47,10 @@ def window_seen(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
 
 
 def hand_hides(maps: SurfaceMaps, towards: Array, half_angle: float, hand: tuple[Array, float]) -> Map:
-    """Share (h, w) of a window of this half angle about `towards` that a hand hides: its middle (3,), its radius."""
+    """Compute the share (h, w) of a window of this half angle about `towards` that a hand hides.
+
+    This is its middle (3,) and radius.
+    """
     middle, radius = hand
     way = middle.astype(np.float32) - maps.points
     distance = np.linalg.norm(way, axis=2)
