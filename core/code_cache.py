@@ -22,7 +22,7 @@ HANDED_DOWN = "TRISECT_TEMPORARY_CACHE"
 
 
 def code_cache() -> Path:
-    """The folder that holds a folder of saved code for each version."""
+    """Return the folder that holds a folder of saved code for each version."""
     usual = usual_cache()
     try:
         usual.mkdir(parents=True, exist_ok=True)
@@ -32,13 +32,13 @@ def code_cache() -> Path:
 
 
 def usual_cache() -> Path:
-    """Where saved code is kept for the next start."""
+    """Return the default folder of saved code."""
     base = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("trisect", appauthor=False)
     return Path(base) / "compiled"
 
 
 def temporary_cache() -> Path:
-    """The temporary folder in place of it, made where no process above has made one."""
+    """Make a temporary folder for saved code, unless a parent process has made one."""
     handed = Path(os.environ.get(HANDED_DOWN, ""))
     return handed if handed.name and handed.is_dir() else _made()[0]
 
@@ -61,7 +61,7 @@ def remove_temporary_cache() -> None:
 
 
 def note_on_cache() -> Message | None:
-    """What is to be told where saved code is lost at the end; None where it is kept."""
+    """Note that saved code is lost at the end; None where it is kept."""
     if HANDED_DOWN not in os.environ:
         return None
     return Message(

@@ -201,16 +201,16 @@ _COMPLETE = "complete"
 
 
 def is_complete() -> bool:
-    """Whether all that a measurement needs was saved, here or with the package."""
+    """Whether all compiled code that a measurement needs was saved, here or with the package."""
     return any((folder / _COMPLETE).exists() for folder in _places())
 
 
 def keep_complete() -> None:
-    """Remember that all was saved; where nothing can be kept it is looked for again."""
+    """Record that all code was saved; where that cannot be written it is checked again."""
     with contextlib.suppress(OSError):
         (FOLDER / _COMPLETE).touch()
 
 
 def saved_functions() -> int:
-    """How many functions were saved, for each combination of types."""
+    """Count the functions saved, for each combination of types."""
     return sum(1 for _ in FOLDER.iterdir())

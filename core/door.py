@@ -24,7 +24,7 @@ WITHOUT = "TRISECT_WITHOUT_WINGS"
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The package that something comes from, and its version."""
+    """Package from which something comes, and its version."""
 
     package: str
     version: str
@@ -32,7 +32,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class Brought:
-    """What one entry point, or one folder of ours, brings.
+    """Object loaded from one entry point, or from one folder of ours, or the reason why it cannot be used.
 
     Parameters
     ----------
@@ -71,12 +71,12 @@ def by_folders(package: str, constant: str) -> Iterator[Brought]:
 
 
 def left_out() -> frozenset[str]:
-    """The names of the wings that WITHOUT names."""
+    """Return the names of the wings that the variable WITHOUT leaves out."""
     return frozenset(filter(None, map(str.strip, os.environ.get(WITHOUT, "").split(","))))
 
 
 def found_at(place: str) -> Any:
-    """What stands at "module:name"; imports the module."""
+    """Import the module and return the object at "module:name"."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)
 

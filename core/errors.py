@@ -16,7 +16,7 @@ _WORD = 40
 
 
 class InputError(Exception):
-    """Something in the input keeps us from measuring: one clear sentence.
+    """Error in the input that makes measuring impossible: one clear sentence.
 
     The sentence says what is wrong, where (file, frame or field), why it matters, and what to do next.
 
@@ -38,11 +38,11 @@ class InputError(Exception):
 
     @property
     def code(self) -> str:
-        """What programs know the error by."""
+        """Code of the error for programs."""
         return self.what.code
 
     def told(self, language: Language = ENGLISH) -> str:
-        """The sentence in a reader's language."""
+        """Return the sentence in a reader's language."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         parts = (where, self.what, self.todo)
         told = _with_short_words([visible(language(part)) for part in parts])
@@ -52,13 +52,13 @@ class InputError(Exception):
 
     @property
     def reason(self) -> Message:
-        """Where and what, without a full stop and without what to do: for a message that names a reason."""
+        """Place and reason, without a full stop and without what to do: for a message that names a reason."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         return Message("input.reason", "{where}: {what}", where=where, what=self.what) if where.text else self.what
 
     @property
     def message(self) -> Message:
-        """The whole sentence as a message, for notes and files."""
+        """Sentence as a message, for notes and files."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         return _sentence(where, self.what, self.todo)
 
@@ -67,15 +67,15 @@ class InputError(Exception):
 
 
 class NoThickness(InputError):
-    """A part was measured, but no thickness could be found in what was measured."""
+    """Error that a part was measured, but no thickness could be found."""
 
 
 class OwnCause(InputError):
-    """What is wrong is seen itself: that other things may be why is not said of it."""
+    """Error whose cause is seen itself: no other possible causes are named with it."""
 
 
 class WrongValue(ValueError):
-    """A value that nothing can be made of, with a message for those who gave it.
+    """Error that a value is unusable, with a message for the user who gave it.
 
     Algorithms and data types raise it. The code that knows where the value came from (a file, a table, a field of the
     window) tells it as an `InputError`.
@@ -102,7 +102,7 @@ def _sentence(where: Message, what: Message, todo: Message) -> Message:
 
 
 def words_of(error: Exception) -> Message | str:
-    """What an error says, as a value of a message: its own message, or the words of another program."""
+    """Return the text of an error, as a value of a message: its own message, or the words of another program."""
     return error.what if isinstance(error, (InputError, WrongValue)) else str(error)
 
 
@@ -141,7 +141,7 @@ def _short(value: Any) -> Any:
 
 
 def refuse(error: InputError) -> None:
-    """Raise `error`: a job that must not be done is told as one that failed."""
+    """Raise `error`: a job that must not be done fails with it."""
     raise error
 
 
@@ -151,4 +151,4 @@ def _restored(kind: type[InputError], what: Message, where: Message | str, todo:
 
 
 class Cancelled(Exception):
-    """The user asked a job to stop; nothing half done may be kept."""
+    """Exception that the user asked a job to stop; nothing half done may be kept."""

@@ -25,11 +25,11 @@ _ACCESS_DENIED = 5
 
 
 class HeldOpen(PermissionError):
-    """Another program holds a file open and has not let go of it."""
+    """Error that another program keeps a file open."""
 
 
 def rename(path: Path, to: Path) -> None:
-    """Rename a file or folder to `to`; a file takes the place of an older one.
+    """Rename a file or folder to `to`; a file replaces an older one.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def remove_tree(folder: Path, *, leave: bool = False) -> None:
 
 
 def is_held(error: OSError) -> bool:
-    """Whether the reason is surely that another program holds a file open."""
+    """Whether the reason is surely that another program has a file open."""
     return isinstance(error, HeldOpen) or getattr(error, "winerror", None) in _HELD
 
 

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 
 def give_back() -> None:
-    """Give free memory back where the C library can be asked to (glibc); elsewhere it does so by itself, or never."""
+    """Return free memory to the system where the C library can do so on request (glibc)."""
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):  # another library than glibc
             ctypes.CDLL(None).malloc_trim(0)

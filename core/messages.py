@@ -31,13 +31,13 @@ _CONTROLS = re.compile("[\\x00-\\x1f\\x7f-\\x9f\\u200e\\u200f\\u2028-\\u202e\\u2
 
 
 def visible(text: str, *, keep: str = "") -> str:
-    """A text from outside with its control characters written out by their codes, all but those in `keep`."""
+    """Write out the control characters of a text from outside by their codes, all but those in `keep`."""
     return _CONTROLS.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], text)
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a file that people write, as a value: 'inner_corners in rig.toml'. A window names its own."""
+    """Field of a file that people write, as a value: 'inner_corners in rig.toml'. A window names its own."""
 
     key: str
     """Dotted: ``camera_target.inner_corners``."""
@@ -48,13 +48,13 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What to type on the command line, as a value: ': trisect scan SET --out DIR'. In a window it is nothing."""
+    """Command to type on the command line, as a value: ': trisect scan SET --out DIR'. In a window it is nothing."""
 
     text: str
 
 
 class Message:
-    """One thing to tell.
+    """Text with a code and values, translated when it is shown.
 
     Parameters
     ----------
@@ -108,11 +108,11 @@ class Message:
 
     @property
     def is_sentence(self) -> bool:
-        """Whether it stands by itself; else it is a part of one, in English without a full stop."""
+        """Whether it is a whole sentence; else it is a part of one, in English without a full stop."""
         return self.text.endswith(".")
 
     def with_values(self, change: Callable[[Any], Any]) -> Message:
-        """The same message, each of its values as `change` gives it."""
+        """Replace each value by what `change` returns for it."""
         return _restored(self.code, self.text, self.many, {name: change(one) for name, one in self.values.items()})
 
     def _parts(self) -> tuple[Any, ...]:
@@ -120,23 +120,26 @@ class Message:
 
 
 def plural_message(code: str, one: str, many: str, /, *, n: int, **values: Any) -> Message:
-    """A message about `n` things: `one` for a single one, `many` for any other number; {n} may stand in both."""
+    """Make a message about `n` things: `one` for a single one, `many` for any other number; {n} may be in both."""
     return _restored(code, one, many, {"n": n, **values})
 
 
 def plain(text: str) -> Message:
-    """A text that is no message of this program's: what a person typed, another program's words, an older file's."""
+    """Make a message of a text that is none of this program's.
+
+    Typed by a user, of another program, of an older file.
+    """
     return Message("", text.replace("{", "{{").replace("}", "}}"))
 
 
 class Label(str):
-    """Fixed words, put into the reader's language where they stand in a message; a text like any other elsewhere."""
+    """Fixed words, translated where they are in a message; a text like any other elsewhere."""
 
     __slots__ = ()
 
 
 def label(english: str, /) -> str:
-    """Fixed words: marks them for the catalogues where they do not stand in the call that tells them."""
+    """Mark fixed words for the catalogues where they are not in the call that shows them."""
     return Label(english)
 
 
@@ -156,13 +159,13 @@ def _frozen(value: Any) -> Any:
 
 
 def iso_time(at: datetime, seconds: bool) -> str:
-    """Date and time of day as English texts have them, which files keep: '2026-11-24 11:32'."""
+    """Format date and time of day as in English texts, and so in files: '2026-11-24 11:32'."""
     return f"{at:%Y-%m-%d %H:%M:%S}" if seconds else f"{at:%Y-%m-%d %H:%M}"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Language:
-    """How messages are told to one reader.
+    """Language of a reader: how messages, numbers and times are written.
 
     Parameters
     ----------
@@ -211,28 +214,31 @@ class Language:
         return visible(told, keep="\n")
 
     def label(self, english: str, /, **values: Any) -> str:
-        """Fixed words in this language; in English where they are not known in it."""
+        """Translate fixed words; English where they are not known in this language."""
         text = self._label(english)
         return _Formatter(self).vformat(text, (), values) if values else text
 
     def number(self, value: float, spec: str = "") -> str:
-        """A number by a format of Python's: its decimal sign here, a true minus sign, no-break spaces for ','."""
+        """Format a number by a format of Python's.
+
+        Its decimal sign here, a true minus sign, no-break spaces for ','.
+        """
         return format(value, spec).translate(str.maketrans("-.,", f"{MINUS}{self.decimal}{NO_BREAK_SPACE}"))
 
     def numeral(self, digits: str) -> str:
-        """Digits as Python writes them, with the decimal sign here and a true minus sign."""
+        """Convert digits as Python writes them to the decimal sign here and a true minus sign."""
         return digits.replace("-", MINUS).replace(".", self.decimal)
 
     def time(self, at: datetime, *, seconds: bool = False) -> str:
-        """Date and time of day, in the time zone that `at` is in."""
+        """Format date and time of day, in the time zone that `at` is in."""
         return self.times(at, seconds)
 
     def day(self, on: date) -> str:
-        """A date without time of day."""
+        """Format a date without time of day."""
         return self.days(on)
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
-        """Several texts in a row: see the module."""
+        """Join several texts to a list: see the module."""
         comma, semicolon = self.separators
         if how == "and" and len(texts) > 1:
             return self.conjunction.format(comma.join(texts[:-1]), texts[-1])
@@ -265,14 +271,14 @@ _SPREAD = re.compile(r"(?<=[\d°]) (?=± ?\d)|(?<=±) (?=\d)")
 
 
 def unparted(text: str) -> str:
-    """`text` with spaces that no line break parts: of a number and its unit, symbol or U, of a standard."""
+    """Put no-break spaces between a number and its unit, symbol or U, and within the name of a standard."""
     for space in (_WITH_UNIT, _STANDARD, _COUNTED, _SPREAD):
         text = space.sub(NO_BREAK_SPACE, text)
     return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)
 
 
 def decimals_of(uncertainty: float) -> int:
-    """Decimals that show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not a positive number."""
+    """Compute the decimals that show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not positive."""
     if not math.isfinite(uncertainty) or uncertainty <= 0:
         return 3
     exponent = int(f"{uncertainty:.1e}".partition("e")[2])  # after rounding: 0.0996 is shown as 0.10
@@ -317,7 +323,7 @@ ENGLISH = Language()
 
 
 def as_json(message: Message) -> dict[str, Any]:
-    """A message as files keep it: code, English text and values; `from_json` reads it."""
+    """Convert a message for files: code, English text and values; `from_json` reads it."""
     return {
         "code": message.code,
         "text": str(message),
@@ -326,7 +332,7 @@ def as_json(message: Message) -> dict[str, Any]:
 
 
 def from_json(kept: Mapping[str, Any] | str) -> Message:
-    """A message that a file kept; a bare text of an older file is told as it is.
+    """Read a message from a file; a bare text of an older file is taken as it is.
 
     Raises
     ------
@@ -341,12 +347,12 @@ def from_json(kept: Mapping[str, Any] | str) -> Message:
 
 
 def as_text(message: Message | None) -> str:
-    """A message as one text, for files that hold nothing but texts; '' for none. `from_text` reads it."""
+    """Convert a message to one text, for files that hold nothing but texts; '' for none. `from_text` reads it."""
     return "" if message is None else json.dumps(as_json(message), ensure_ascii=False)
 
 
 def from_text(kept: str) -> Message | None:
-    """A message that a file kept as a text; a sentence of an older file is told as it is; None for ''.
+    """Read a message that a file has as a text; a sentence of an older file is taken as it is; None for ''.
 
     Raises
     ------

@@ -19,11 +19,11 @@ class Progress(Protocol):
 
 
 def silent(step: str, done: int, total: int) -> None:
-    """Say nothing and never cancel: the default."""
+    """Report nothing and never cancel: the default."""
 
 
 class StepProgress:
-    """A progress that remembers its last report.
+    """Progress that remembers its last report.
 
     `within_step` is the progress for a part of a step: it moves nothing, but the job can be cancelled there too.
     """
@@ -37,7 +37,7 @@ class StepProgress:
         self._progress(step, done, total)
 
     def within_step(self, step: str, done: int, total: int) -> None:
-        """Report once more where the whole step is, whatever a part of it reports."""
+        """Report the position in the whole step again, whatever a part of it reports."""
         self._progress(*(self._last or (step, done, total)))
 
 

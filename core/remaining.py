@@ -80,7 +80,7 @@ COUNTED = ("camera views", "plane poses", "fan poses", "frames")
 
 
 def page_of(job: str, stage: str) -> tuple[int, int, str] | None:
-    """Page of a job's stage: its number from 1, of how many, its name; None where the job has one alone."""
+    """Return the page of a job's stage: its number from 1, of how many, its name; None where the job has one alone."""
     done = {step.name: step.page for step in GRAPH if step.name in _steps_of(job)}
     pages = list(dict.fromkeys(done.values()))
     page = next((page for step, page in done.items() if stage in _STAGES[step]), None)
@@ -158,7 +158,7 @@ class _Pace:
 
 
 class Remaining:
-    """Follows one job.
+    """Estimator of the time left of one job.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ class Remaining:
         self.seconds: dict[str, float] = {}
 
     def tell(self, stage: str, done: int, total: int) -> None:
-        """The job's progress."""
+        """Report the job's progress."""
         if stage != self._stage:
             self._close()
             self._stage, self._begun = stage, self._clock()
@@ -200,14 +200,14 @@ class Remaining:
             self._done, self._done_s = done / total, self._in_stage
 
     def finish(self) -> dict[str, float]:
-        """The job is done: seconds of each stage, to be remembered."""
+        """Return the seconds of each stage, to be remembered: the job is done."""
         self._close()
         self._stage = ""
         return self.seconds
 
     @property
     def share(self) -> float | None:
-        """How much of the whole job is done, 0 … 1, and never less than was said before; None if it is not known."""
+        """Share of the whole job that is done, 0 … 1, never decreasing; None if it is not known."""
         left = self.left
         if left is None:
             return None
@@ -218,7 +218,7 @@ class Remaining:
 
     @property
     def left(self) -> float | None:
-        """Seconds left, or None while nothing can be said."""
+        """Time left in s; None while it cannot be estimated."""
         usual, waited = self._usual.get(self._stage, 0.0), self._in_stage - self._done_s
         if not usual:
             told = self._done > _TRUSTED and self._done_s > _NOTICED_S
@@ -259,7 +259,7 @@ class Remaining:
 
 
 def in_words(seconds: float) -> str:
-    """A rough duration as one says it: "12 s", "2 min"."""
+    """Write a duration roughly in words: "12 s", "2 min"."""
     if seconds < 60:
         return f"{max(1, round(seconds))} s"
     return f"{round(seconds / 60)} min"

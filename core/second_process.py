@@ -42,13 +42,13 @@ _LENGTH = 8
 
 
 class Call(Protocol[Item, Result]):
-    """What either process can do: known by its name, and told of as any job."""
+    """Function that either process can do, identified by its name, with progress as of any job."""
 
     def __call__(self, item: Item, /, *, progress: Progress = silent) -> Result: ...
 
 
 class SecondProcess:
-    """Runs one call after another, in the order they are submitted; ended with the `with` block.
+    """Second process that runs one call after another, in the order they are submitted; ended with the `with` block.
 
     It starts at once and imports `modules` before the first call.
     """
@@ -76,14 +76,14 @@ class SecondProcess:
         self._process.wait()
 
     def submit(self, call: Call[Item, Result], item: Item, progress: Progress = silent) -> Future[Result]:
-        """Have `call(item)` done; until it has begun, its future can be cancelled. A StageTimes learns what it cost.
+        """Queue `call(item)`; until it has begun, its future can be cancelled. A StageTimes learns what it cost.
 
         The future raises what the call raises, and InputError if the process is gone.
         """
         return self._calls.submit(self._done, call, item, progress)
 
     def wait(self, future: Future[Result], progress: Progress, step: str) -> Result:
-        """The result of a future of `submit`; meanwhile `progress` hears how far the process is, and may cancel.
+        """Wait for a future of `submit` and return its result; `progress` reports meanwhile, and may cancel.
 
         `step` is what it hears where the process tells nothing.
         """
@@ -128,7 +128,7 @@ class SecondProcess:
 
 @contextmanager
 def second_process(modules: Sequence[str] = ()) -> Iterator[SecondProcess | None]:
-    """A second process; None where there is no core for it, or it cannot be started."""
+    """Start a second process; None where there is no core for it, or it cannot be started."""
     try:
         started = SecondProcess(modules) if cores() > 1 else None
     except OSError:

@@ -11,7 +11,7 @@ from core.progress import Progress, silent
 
 
 class StageTimes:
-    """A progress that books processor time to the step reported last, and to stages that run on other threads.
+    """Progress that counts processor time for the step reported last, and for stages on other threads.
 
     Time in which a thread waits for another one does not count, so the sum is what the job costs, and `wall_s` how
     long it has taken.
@@ -34,7 +34,7 @@ class StageTimes:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Book what happens within to the stage `name`, on any thread."""
+        """Count the time within for the stage `name`, on any thread."""
         own = threading.get_ident() == self._thread
         if own:
             self._book_own()
@@ -48,19 +48,19 @@ class StageTimes:
                 self._since = now
 
     def add(self, seconds: Mapping[str, float]) -> None:
-        """Book what stages have cost in another process."""
+        """Add the time of stages in another process."""
         for name, spent in seconds.items():
             self._book(name, spent)
 
     def seconds(self) -> Mapping[str, float]:
-        """Processor time in s by stage, largest first."""
+        """Return processor time in s by stage, largest first."""
         self._book_own()
         with self._lock:
             return dict(sorted(self._seconds.items(), key=lambda item: -item[1]))
 
     @property
     def wall_s(self) -> float:
-        """Time in s since the beginning."""
+        """Time in s since the start."""
         return time.perf_counter() - self._started
 
     def _book_own(self) -> None:
@@ -75,5 +75,5 @@ class StageTimes:
 
 
 def stage(times: Progress | None, name: str) -> AbstractContextManager[None]:
-    """Book a stage with `times.stage(name)`; nothing where there are none, or `times` is another kind of progress."""
+    """Count a stage with `times.stage(name)`; nothing where there are none, or `times` is another kind of progress."""
     return times.stage(name) if isinstance(times, StageTimes) else nullcontext()

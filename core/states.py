@@ -25,7 +25,7 @@ first. `changed_since` says what it no longer is of."""
 
 
 def changed_since(names: Sequence[str]) -> Message:
-    """Say why a result is out of date: by the names of what it was made of and is another now.
+    """Make the reason why a result is out of date: the names of its inputs that have changed.
 
     Examples
     --------
@@ -36,7 +36,7 @@ def changed_since(names: Sequence[str]) -> Message:
 
 
 def outdated_with(steps: Sequence[str]) -> Message:
-    """Say that a result is out of date by what it rests on: by the names of the steps that are.
+    """Make the reason why a result is out of date: the names of the steps it rests on that are.
 
     Examples
     --------

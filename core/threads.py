@@ -21,7 +21,7 @@ READ_AHEAD = 1
 
 
 def cores() -> int:
-    """Processor cores that this process may use."""
+    """Count the processor cores that this process may use."""
     with suppress(AttributeError):
         return len(os.sched_getaffinity(0))  # where an administrator or `taskset` leaves it some of them only
     return os.cpu_count() or 1
@@ -56,7 +56,7 @@ def ordered_map(
 
 
 def result_of(future: Future[Result], idle: Callable[[], object] | None) -> Result:
-    """The result of a future; while it is waited for, `idle` is called now and then."""
+    """Wait for the result of a future, and call `idle` now and then meanwhile."""
     while idle is not None and not wait([future], IDLE_EVERY_S).done:
         idle()
     return future.result()

@@ -38,13 +38,13 @@ _FIXED = re.compile(r"(<[^<>]*>|&\w+;|%\w+)")
 
 @cache
 def languages() -> tuple[str, ...]:
-    """The names of all languages there are, English first."""
+    """List the names of all languages there are, English first."""
     names = (path.name.removesuffix(".po") for path in _FOLDER.iterdir() if path.name.endswith(".po"))
     return ("en", *sorted(names))
 
 
 def preferred(wanted: Iterable[str]) -> str:
-    """The first of several languages that there is, or one that is near it ('de' for 'de_CH'); else English."""
+    """Choose the first of several languages that there is, or one that is near it ('de' for 'de_CH'); else English."""
     from babel.core import negotiate_locale
 
     names = [name.replace("-", "_") for name in wanted if name]
@@ -52,7 +52,7 @@ def preferred(wanted: Iterable[str]) -> str:
 
 
 def own_name(name: str) -> str:
-    """What a language is called by those who speak it: 'Deutsch'; the pseudo-language by its code."""
+    """Return the name of a language in itself: 'Deutsch'; of the pseudo-language its code."""
     from babel import Locale
 
     return name if name == PSEUDO else str(Locale.parse(name).get_language_name() or name)
@@ -60,7 +60,7 @@ def own_name(name: str) -> str:
 
 @cache
 def language(name: str) -> Language:
-    """A language by its name; reading its catalogue takes 0.1 to 0.15 s of processor time, once.
+    """Load a language by its name; reading its catalogue takes 0.1 to 0.15 s of processor time, once.
 
     Raises
     ------
@@ -133,7 +133,7 @@ class _Pseudo(Language):
 
 
 def strange(text: str) -> str:
-    """A text with its letters accented, its vowels doubled and brackets around it; its {places} stay.
+    """Make the pseudo-translation of a text: letters accented, vowels doubled, brackets around it; its {places} stay.
 
     >>> strange("{n} of {m} frames")
     '⟦{n} óóf {m} fŕáámééš⟧'

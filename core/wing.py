@@ -24,7 +24,7 @@ _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
 @dataclass(frozen=True, slots=True)
 class ReportSection:
-    """A section of the report: a heading and facts. It stands behind the checks by artefacts.
+    """Section of the report: a heading and facts. It stands behind the checks by artefacts.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class ReportSection:
 
 @dataclass(frozen=True, slots=True)
 class Wing:
-    """What a wing adds to the command line and the results. What it names is imported when it is asked for.
+    """Commands, steps and results that a wing adds. What it names is imported when it is asked for.
 
     Parameters
     ----------
@@ -62,11 +62,11 @@ class Wing:
 
 
 class Named(Protocol):
-    """What has the name of a wing."""
+    """Object with the name of a wing."""
 
     @property
     def name(self) -> str:
-        """Of the wing."""
+        """Name of the wing."""
         ...
 
 
@@ -75,7 +75,7 @@ AWing = TypeVar("AWing", bound=Named)
 
 @dataclass(frozen=True, slots=True)
 class Found(Generic[AWing]):
-    """The wings of one kind, ours first, each with the package it comes from, and what cannot be used.
+    """Wings of one kind, ours first, each with the package it comes from, and what cannot be used.
 
     The origin of one of ours is None.
     """
@@ -89,12 +89,12 @@ class Found(Generic[AWing]):
 
 @cache
 def wings() -> Found[Wing]:
-    """All wings there are, loaded once."""
+    """Load all wings, once."""
     return found_wings(Wing, chain(by_folders(OURS, "WING"), by_entry_points(GROUP)))
 
 
 def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
-    """The wings among what is brought, without those that are left out; of one name the first counts."""
+    """Select the wings among loaded objects, without those left out; of one name the first counts."""
     found, unusable = dict[str, tuple[AWing, Origin | None]](), list[Brought]()
     for one in brought:
         wing = one.what
