@@ -66,9 +66,14 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(missing, where=path, todo=todo or "") from error
+    except UnicodeDecodeError as error:
+        raise InputError(
+            Message("file.no_text", "this is no UTF-8 text: byte {number} is part of no letter", number=error.start + 1),
+            where=path,
+            todo=Message("advice.save_utf8", "save it as UTF-8 in an editor"),
+        ) from error
     except (OSError, ValueError) as error:
-        what = Message("file.no_text", "cannot be read as UTF-8 text ({reason})", reason=str(error))
-        raise InputError(what, where=path) from error
+        raise cannot_read(path, error) from error
     tell(path)
     return text
 
@@ -126,5 +131,8 @@ def refused_path(error: Exception) -> InputError | None:
 
 def cannot_read(path: Path, error: OSError | ValueError) -> InputError:
     """Make the error for a file or folder that is there and cannot be read."""
+    if isinstance(error, IsADirectoryError):
+        todo = Message("advice.file_in_its_place", "put a file there")
+        return InputError(Message("file.is_folder", "this is a folder"), where=path, todo=todo)
     reason = str(getattr(error, "strerror", "") or error)
     return InputError(Message("file.cannot_be_read", "cannot be read ({reason})", reason=reason), where=path)
