@@ -31,6 +31,10 @@ SIDE_BY_SIDE := -n $(TESTS_AT_ONCE) $(AS_MODULES)
 BOTH_WAYS   := $(filter-out %_numbers.py,$(wildcard tests/workbench/views/scene/test_*.py))
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 1 $(AS_MODULES)
+VIRTUAL_SCREEN := $(shell command -v Xvfb)
+
+# What runs beside the tests offscreen is told when it ends.
+IN_ONE_PIECE = > "$$TRISECT_MADE_ONCE/$@" 2>&1; passed=$$?; cat "$$TRISECT_MADE_ONCE/$@"; exit $$passed
 
 # Files with proofs: to import all the others takes each process as long as a proof. Those of SCREEN_ONLY are proven
 # where they are tested.
@@ -45,7 +49,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
+.PHONY: demo app test offscreen beside below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -57,14 +61,16 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 	$(BIN)/python -c 'from core.pipeline.compile_ahead import compile_ahead; compile_ahead()'
 
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
-	@$(MAKE) --no-print-directory -j2 --output-sync=target check examples  # neither keeps two cores busy
 	@TRISECT_MADE_ONCE=$$(mktemp -d) && export TRISECT_MADE_ONCE && trap 'rm -rf "$$TRISECT_MADE_ONCE"' EXIT && trap 'exit 130' INT TERM; \
-	if command -v Xvfb >/dev/null; then $(MAKE) --no-print-directory -j2 offscreen on_screen; \
-	else echo "Xvfb is not installed: windows are tested without a screen only"; set -x; \
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
+	$(if $(VIRTUAL_SCREEN),,echo "Xvfb is not installed: windows are tested without a screen only";) \
+	$(MAKE) --no-print-directory -j3 beside $(if $(VIRTUAL_SCREEN),on_screen) offscreen
 
-offscreen: $(READY)
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%)
+offscreen: compile
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(if $(VIRTUAL_SCREEN),$(SCREEN_ONLY:%=--ignore=%))
+
+# What is checked without tests: each of it keeps one core busy, so it fills the time in which tests wait.
+beside: compile
+	@{ $(MAKE) --no-print-directory check && $(MAKE) --no-print-directory examples; } $(IN_ONE_PIECE)
 
 # Files of tests; pytest would take no file for all.
 BELOW_WORKBENCH = --ignore=tests/workbench
@@ -78,9 +84,8 @@ touched_below_workbench: $(READY) ## those of them that rest on something that h
 imports: $(READY)         ## import every module of the program
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m tests.imports
 
-on_screen: $(READY)       # beside `offscreen`, so it is told in one piece when it ends
-	@{ set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); } > "$$TRISECT_MADE_ONCE/on_screen" 2>&1; \
-	passed=$$?; cat "$$TRISECT_MADE_ONCE/on_screen"; exit $$passed
+on_screen: compile
+	@( set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY) ) $(IN_ONE_PIECE)
 
 examples: compile         ## those in the code's documentation and in the manual
 	$(BIN)/pytest -q -p tests.examples --doctest-modules --doctest-glob='*.md' core trisect resources/manual
