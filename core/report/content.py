@@ -46,7 +46,7 @@ MOST_CALLOUTS = 10
 
 @dataclass(frozen=True, slots=True)
 class CalibrationMark:
-    """Which calibration a result rests on: its id, the SHA-256 of its file, and when it was made (None: not known)."""
+    """Calibration a result rests on: its id, the SHA-256 of its file, and when it was made (None: not known)."""
 
     of: Literal["camera", "planes"]
     id: str
@@ -54,13 +54,13 @@ class CalibrationMark:
     made_at: datetime | None = None
 
     def age(self, at: datetime) -> timedelta | None:
-        """How old it was then; None where that is not known."""
+        """Compute the age of the calibration at a time; None where that is not known."""
         return None if self.made_at is None else at - self.made_at
 
 
 @dataclass(frozen=True, slots=True)
 class AuditMark:
-    """The entry of the project's audit trail a report was made at: its number, and its SHA-256 in hex."""
+    """Entry of the project's audit trail a report was made at: its number, and its SHA-256 in hex."""
 
     n: int
     sha256: str
@@ -68,7 +68,7 @@ class AuditMark:
 
 @dataclass(frozen=True, slots=True)
 class RepeatLine:
-    """One of several scans of the same part: its thickness and U = k·u in mm, and the calibration it rests on."""
+    """Scan out of several of the same part: its thickness and U = k·u in mm, and the calibration it rests on."""
 
     scan: str
     thickness_mm: float
@@ -80,7 +80,7 @@ class RepeatLine:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Overlay:
-    """One frame and what was found in it.
+    """Frame with the stripes and crossings found in it.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class Overlay:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Deviations:
-    """How far places of the surface are from the nominal one.
+    """Deviations of places of the surface from the nominal one.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class Deviations:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LightProfiles:
-    """What the fan alone showed of a part, without any sweep.
+    """Profiles of the fan alone on a part, without any sweep.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ class LightProfiles:
 
 @dataclass(frozen=True, slots=True)
 class BroughtSection:
-    """A section of the report that a wing brings.
+    """Section of the report from a wing.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ class BroughtSection:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ReportContent:
-    """Everything that is printed. The same content gives the same bytes.
+    """Content of a report: everything that is printed. The same content gives the same bytes.
 
     Parameters
     ----------
@@ -351,17 +351,17 @@ class ReportContent:
 
     @property
     def results(self) -> ResultList:
-        """Every result, and the verdict on the part."""
+        """List of all results, with the verdict on the part."""
         return ResultList.of(self.gauge, self.inspected, unmeasured=self.unmeasured)
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Every result in a row: the gauge's thickness first, then what was inspected."""
+        """Characteristics in a row: the gauge's thickness first, then those of the inspection."""
         return self.results.rows
 
     @property
     def points_used(self) -> Mapping[str, NDArray[np.int64]]:
-        """By name, which points each face or feature rests on."""
+        """Indices of the points that each face or feature rests on, by its name."""
         if self.gauge is None:
             return self.points
         faces = {label("Upper face"): self.gauge.upper.indices, label("Lower face"): self.gauge.lower.indices}
@@ -369,7 +369,7 @@ class ReportContent:
 
     @property
     def shown_at(self) -> tuple[tuple[Characteristic, NDArray[np.int64]], ...]:
-        """The worst characteristic of each feature, and the points it rests on; at most MOST_CALLOUTS, the worst first.
+        """Worst characteristic of each feature, and the points it rests on; at most MOST_CALLOUTS, the worst first.
 
         The gauge's thickness is shown on its upper face.
         """
@@ -385,13 +385,13 @@ class ReportContent:
 
     @property
     def view_shown(self) -> SeenFrom | None:
-        """How the surface was left in 3D, if anything of this one is in sight so."""
+        """View of the surface as the user left it in 3D, if anything of this surface is in sight so; else None."""
         points = self.mesh.vertices if len(self.mesh.triangles) else self.cloud.points
         return self.view if self.view is not None and self.view.in_sight(np.asarray(points)).any() else None
 
     @property
     def at_reference(self) -> bool:
-        """Whether any result is stated at 20 °C, or may be; its own note then says what that changed."""
+        """Whether any result is stated at 20 °C, or may be; its own note then states what that changed."""
         return any(one.at_20 is not False for one in self.characteristics)
 
     @property
@@ -427,13 +427,13 @@ class ReportContent:
 
     @property
     def repeat_statistics(self) -> RepeatStatistics | None:
-        """What the repeats say together, or None without any."""
+        """Statistics of the repeats, or None without any."""
         thicknesses = [repeat.thickness_mm for repeat in self.repeats]
         return repeat_statistics(thicknesses, self.nominal_mm) if thicknesses else None
 
     @property
     def printable(self) -> Mapping[str, str]:
-        """Name and heading of those SECTIONS that this content has something for, hidden or not."""
+        """Name and heading of those SECTIONS for which there is content, hidden or not."""
         missing = {
             "view": self.view_shown is None,
             "frame": self.overlay is None,
@@ -457,7 +457,7 @@ class ReportContent:
 
     @property
     def facts(self) -> Mapping[str, tuple[Fact, ...]]:
-        """What is told of each part of the work, by its name."""
+        """Facts of each part of the work, by its name."""
         artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
         return {
             "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
@@ -471,7 +471,7 @@ class ReportContent:
 
     @property
     def scan_facts(self) -> tuple[Fact, ...]:
-        """What is told of the scan."""
+        """Facts of the scan."""
         cloud = self.cloud
         extent = np.ptp(cloud.points, axis=0) if len(cloud) else None
         triangles = len(self.mesh.triangles)
@@ -479,7 +479,7 @@ class ReportContent:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The gravest notes, then the report's own, those of the gauge and of both calibrations, each once."""
+        """Notes of the report, the gauge and both calibrations, each once, the gravest first."""
         of_gauge = self.gauge.notes if self.gauge else ()
         of_each = [
             Message("report.note_of_result", "{name}: {note}", name=result_name(one), note=note)

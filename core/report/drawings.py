@@ -55,7 +55,7 @@ from core.study.study import InOrder
 
 
 def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
-    """What is to be drawn, by name."""
+    """Collect the functions that draw each figure of the report, by its name."""
     width = TEXT_WIDTH / mm
     gauge, overlay, size = content.gauge, content.overlay, content.camera.camera.image_size
     drawings: dict[str, Callable[[], Figure]] = {}
@@ -115,7 +115,7 @@ def _study_figure(look: ReportLook, study: InOrder, width: float) -> Figure:
 
 
 def image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:
-    """A drawn figure, compressed without loss, or as JPEG with full colour resolution where it holds a photograph."""
+    """Compress a drawn figure without loss, or as JPEG with full colour resolution where it holds a photograph."""
     rgb = figures.pixels(figure, decimal)
     if not photo:
         return ImageReader(Image.fromarray(rgb))

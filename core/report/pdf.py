@@ -71,7 +71,7 @@ LIMITS = (
 
 
 def prepare() -> None:
-    """Load fonts and draw once: what takes time before a first report, and none before later ones."""
+    """Load fonts and draw once, which takes time before a first report only."""
     prepare_reportlab()
     figure = new_figure(20, 20)
     figure.add_axes((0.2, 0.2, 0.7, 0.7)).set_title("1")
@@ -79,7 +79,7 @@ def prepare() -> None:
 
 
 def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
-    """The report as the bytes of a PDF; nothing is written to disk.
+    """Make the report as the bytes of a PDF; nothing is written to disk.
 
     The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
     are embedded, and the file is PDF/A. Where this computer has no font for an East Asian text it is not, and a note

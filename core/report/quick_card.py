@@ -34,7 +34,7 @@ HEAD, FOOT = 17 * mm, 22 * mm
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A heading and what is to be done, or known, under it."""
+    """Heading with the steps, or facts, under it."""
 
     title: str
     lines: tuple[str, ...]
@@ -128,7 +128,7 @@ SIZES = (11.5, 11.0, 10.5, 10.0, 9.5, 9.0, 8.5, 8.0)
 
 
 def quick_card(language: str = "en", paper: Paper = "A4") -> bytes:
-    """The card as the bytes of a PDF of one page; the same language gives the same bytes.
+    """Make the card as the bytes of a PDF of one page; the same language gives the same bytes.
 
     Raises
     ------

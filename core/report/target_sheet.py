@@ -56,7 +56,7 @@ LOOK = ReportLook(ENGLISH, ACCENT)
 
 @dataclass(frozen=True, slots=True)
 class SheetLayout:
-    """Where a target lies on its sheet: sizes of the sheet, and the target's upper left corner from the sheet's, mm."""
+    """Layout of a target on its sheet: sizes of the sheet, and the target's upper left corner from the sheet's, mm."""
 
     width_mm: float
     height_mm: float
@@ -65,7 +65,7 @@ class SheetLayout:
 
 
 def target_sheet(target: Target, paper: SheetPaper = "A4", *, title: str = "") -> bytes:
-    """One page with `target` to scale, as the bytes of a PDF; upright or across, as it fits better.
+    """Draw `target` to scale on one page, as the bytes of a PDF; upright or across, as it fits better.
 
     Everything is drawn as lines and areas, so the target is as true as the printer. The same target gives the same
     bytes. `title` is a name of the user's to print with it.
@@ -92,7 +92,7 @@ def target_sheet(target: Target, paper: SheetPaper = "A4", *, title: str = "") -
 
 
 def sheet_layout(target: Target, paper: SheetPaper) -> SheetLayout:
-    """Where `target` lies on `paper`: in the middle of the sheet, or as near to it as the rulers leave room.
+    """Place `target` on `paper`: in the middle of the sheet, or as near to it as the rulers leave room.
 
     Raises
     ------
@@ -231,7 +231,7 @@ def _draw_words(canvas: Any, target: Target, paper: SheetPaper, layout: SheetLay
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TargetArt:
-    """The black of a target, in mm from its upper left corner, x to the right and y down.
+    """Black areas of a target, in mm from its upper left corner, x to the right and y down.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ class TargetArt:
 
 
 def target_art(target: Target) -> TargetArt:
-    """The black of `target`, at its true size.
+    """Make the black areas of `target`, at its true size.
 
     Raises
     ------

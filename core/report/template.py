@@ -51,7 +51,7 @@ inputs.
 
 @dataclass(frozen=True, slots=True)
 class ReportTemplate:
-    """A company's own in a report.
+    """Company's own parts of a report.
 
     Parameters
     ----------
@@ -89,6 +89,6 @@ class ReportTemplate:
 
     @property
     def words(self) -> tuple[object, ...]:
-        """All that it makes a report say; empty if it says nothing."""
+        """Texts that it adds to a report; empty if there are none."""
         said = (self.name, self.address, self.footer, self.text, self.signatures)
         return said if any(said) else ()

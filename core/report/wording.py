@@ -24,13 +24,13 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """The words of one language and the numbers of a report in it: `words("{n} of {m} used", n=3, m=5)`."""
+    """Words of one language and the numbers of a report in it: `words("{n} of {m} used", n=3, m=5)`."""
 
     language: Language = messages.ENGLISH
 
     @classmethod
     def of(cls, name: str) -> Words:
-        """Those of a language by its name."""
+        """Load the words of a language by its name."""
         return cls(language(name))
 
     def __call__(self, said: str | Message, /, **values: object) -> str:
@@ -38,11 +38,14 @@ class Words:
         return self.language(said) if isinstance(said, Message) else self.language.label(said, **values)
 
     def known(self, said: str | Message) -> str:
-        """What other rooms say: a message, or fixed words; what is neither, a name, stays as it is."""
+        """Translate a message or fixed words of other rooms; anything else, a name, stays as it is."""
         return self.language(said) if isinstance(said, Message) and said.code else self.language.label(str(said))
 
     def fixed(self, value: float, decimals: int, *, signed: bool = False) -> str:
-        """`value` with so many decimals (negative: rounded to tens, hundreds), true minus sign, no minus zero."""
+        """Format `value` with so many decimals, a true minus sign and no minus zero.
+
+        Negative: rounded to tens, hundreds.
+        """
         if not math.isfinite(value):
             return self("unknown")
         step = Decimal(1).scaleb(-decimals)
@@ -52,28 +55,28 @@ class Words:
         return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
 
     def general(self, value: float) -> str:
-        """A value as it was stated: no more digits than it has, a power of ten for very small and large ones."""
+        """Format a value as it was stated: no more digits than it has, a power of ten for very small and large ones."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
-        """Several texts in a row, `how` as in `core.messages`."""
+        """Join several texts to a list, `how` as in `core.messages`."""
         return self.language.joined(texts, how)
 
     def in_unit(self, quantity: str, unit: str) -> str:
-        """What a column or an axis shows, with the unit of its numbers."""
+        """Write the name of a column or an axis, with the unit of its numbers."""
         return self.language.label("{quantity}, {unit}", quantity=quantity, unit=unit)
 
     def time(self, at: datetime, *, seconds: bool = False) -> str:
-        """Date and time of day, in the time zone that `at` is in."""
+        """Format date and time of day, in the time zone that `at` is in."""
         return self.language.time(at, seconds=seconds)
 
     def day(self, on: date) -> str:
-        """A date without time of day."""
+        """Format a date without time of day."""
         return self.language.day(on)
 
     def numeral(self, digits: str) -> str:
-        """Digits with the language's decimal sign and a true minus sign."""
+        """Convert digits to the language's decimal sign and a true minus sign."""
         return self.language.numeral(digits)
 
 
@@ -85,17 +88,17 @@ SHORT_HASH = 12
 
 
 def short_hash(digest: str) -> str:
-    """'522c08e52394…'."""
+    """Shorten a hash: '522c08e52394…'."""
     return f"{digest[:SHORT_HASH]}…"
 
 
 def points_counted(number: int) -> Message:
-    """'1 204 points'."""
+    """Make the message of a number of points: '1 204 points'."""
     return plural_message("report.points", "{n:,} point", "{n:,} points", n=number)
 
 
 def grouped(number: int) -> str:
-    """An integer with no-break spaces between thousands."""
+    """Format an integer with no-break spaces between thousands."""
     return f"{number:,}".replace(",", NO_BREAK_SPACE)
 
 
@@ -109,44 +112,44 @@ SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_P
 
 
 def fixed(value: float, decimals: int, *, signed: bool = False) -> str:
-    """`value` in English with so many decimals: see `Words.fixed`."""
+    """Format `value` in English with so many decimals: see `Words.fixed`."""
     return ENGLISH.fixed(value, decimals, signed=signed)
 
 
 def with_uncertainty(value: float, uncertainty: float, words: Words = ENGLISH) -> tuple[str, str]:
-    """Value and uncertainty rounded alike, the uncertainty to two significant digits."""
+    """Round value and uncertainty alike, the uncertainty to two significant digits."""
     decimals = decimals_of(uncertainty)
     return words.fixed(value, decimals), words.fixed(uncertainty, decimals)
 
 
 def count(number: int, noun: str) -> str:
-    """'1 frame', '1 204 frames', in English, whatever the noun."""
+    """Write a number with its noun: '1 frame', '1 204 frames', in English, whatever the noun."""
     return f"{grouped(number)} {noun}{'' if number == 1 else 's'}"
 
 
 def thickness_line(gauge: GaugeResult, words: Words = ENGLISH) -> str:
-    """'50.012 mm ± 0.024 mm (k = 2)'."""
+    """Write a thickness with its U: '50.012 mm ± 0.024 mm (k = 2)'."""
     return " ".join(_parts(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", words))
 
 
 def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
-    """'50.012 mm ± 0.024 mm (k = 2)', or the same in degrees."""
+    """Write a value with its U: '50.012 mm ± 0.024 mm (k = 2)', or the same in degrees."""
     return " ".join(value_parts(one, words))
 
 
 def value_parts(one: Characteristic, words: Words = ENGLISH) -> tuple[str, str]:
-    """The same in two: '50.012 mm ± 0.024 mm' and '(k = 2)', or what is to be said of an uncertainty not known."""
+    """Write a value with its U in two parts: '50.012 mm ± 0.024 mm' and '(k = 2)', or a note on an unknown U."""
     unit, factor = shown_unit(one)
     return _parts(factor * one.value, factor * one.U, one.k, unit, words)
 
 
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
-    """What a characteristic is called, its kind in the report's language: "top flatness", "stairs height 2"."""
+    """Write the name of a characteristic, its kind in the report's language: "top flatness", "stairs height 2"."""
     return words(result_name(one))
 
 
 def result_name(one: Characteristic) -> Message:
-    """The same for a message."""
+    """Make the name of a characteristic as a message."""
     feature, kind, number = one.name.rpartition(one.kind)
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
         return plain(one.name)  # somebody's own name, as of a cut
@@ -154,39 +157,42 @@ def result_name(one: Characteristic) -> Message:
 
 
 def name_within(one: Characteristic, feature: str, words: Words = ENGLISH) -> str:
-    """What a result is called under its feature: "flatness", "height 2", or the name a user gave it."""
+    """Write the name of a result under its feature: "flatness", "height 2", or the name a user gave it."""
     own = one.name.removeprefix(f"{feature} ")
     return words(result_name(replace(one, name=own)))
 
 
 def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
-    """The same where it begins a line: "Thickness", but a feature's name as its user typed it."""
+    """Write the name of a characteristic at the beginning of a line: "Thickness"; a feature's name stays as typed."""
     shown = shown_name(one, words)
     return capital(shown) if one.name.startswith(one.kind) else shown
 
 
 def verdict_title(verdict: str, words: Words = ENGLISH) -> str:
-    """A verdict as a title: "Not conforming"."""
+    """Write a verdict as a title: "Not conforming"."""
     return capital(words(DECISIONS[verdict]))
 
 
 def study_name(name: str, words: Words = ENGLISH) -> str:
-    """Name of what a study measured: the thickness in the reader's language, any other as the user gave it."""
+    """Return the name of what a study measured.
+
+    The thickness in the reader's language, any other as the user gave it.
+    """
     return words(name) if name == THICKNESS else name
 
 
 def shown_unit(one: Characteristic) -> tuple[str, float]:
-    """The unit a characteristic is printed in, and the factor to it."""
+    """Return the unit a characteristic is printed in, and the factor to it."""
     return ("°", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
 
 
 def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
-    """A number with its unit, which no line break parts: '0.02 mm', but '90°', as ISO 80000-1 has it."""
+    """Write a number with its unit, without a break between them: '0.02 mm', but '90°', as ISO 80000-1 has it."""
     return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
 
 
 def unbroken(text: str) -> str:
-    """The same text, which no line break parts."""
+    """Replace the spaces of a text by no-break ones."""
     return text.replace(" ", NO_BREAK_SPACE)
 
 
@@ -199,7 +205,7 @@ def _parts(value: float, U: float, k: float, unit: str, words: Words) -> tuple[s
 
 
 def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
-    """What the number behind ± means."""
+    """Write the sentence that explains the number behind ±."""
     if not math.isfinite(U):
         return words("Without an uncertainty the value is no complete result of a measurement.")
     coverage = COVERAGE.get(float(k))
@@ -216,14 +222,14 @@ PROVES_NOTHING = label(
 
 
 def verdict_sentence(gauge: GaugeResult, words: Words = ENGLISH) -> str:
-    """Why the verdict on a thickness is what it is (ISO 14253-1), with the numbers that decide."""
+    """Write the reason of the verdict on a thickness (ISO 14253-1), with the numbers that decide."""
     if gauge.limits is None:
         return words("No nominal value with a tolerance was given, so the thickness is stated without a verdict.")
     return decision_sentence(thickness_characteristic(gauge), words)
 
 
 def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Why the decision on a characteristic is what it is (ISO 14253-1), with the numbers that decide."""
+    """Write the reason of the decision on a characteristic (ISO 14253-1), with the numbers that decide."""
     if one.limits is None or one.deviation is None:
         return words("No nominal value with a tolerance was given, so the result is stated without a verdict.")
     if one.doubts:
@@ -234,13 +240,13 @@ def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
 
 
 def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
-    """'±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm': the permitted deviations; "" for none."""
+    """Write the permitted deviations: '±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm'; "" for none."""
     allowed = permitted(one)
     return "" if allowed is None else words(allowed)
 
 
 def permitted(one: Characteristic) -> Message | None:
-    """The same as a message; None without any limit."""
+    """Make the permitted deviations as a message; None without any limit."""
     unit, factor = shown_unit(one)
     if one.limits is None:
         return None
@@ -294,7 +300,7 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
 def limits_of_thickness(
     gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
 ) -> tuple[str, ...]:
-    """What no thickness of this instrument covers; `temperatures`: whether they are stated.
+    """List what no thickness of this instrument covers; `temperatures`: whether they are stated.
 
     `corrected`: whether it is stated at 20 °C.
     """
@@ -317,7 +323,7 @@ def limits_of_thickness(
 def limits_of_inspection(
     words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
 ) -> tuple[str, ...]:
-    """What no inspection of this instrument covers; `corrected`: whether a length is stated at 20 °C."""
+    """List what no inspection of this instrument covers; `corrected`: whether a length is stated at 20 °C."""
     return (
         words("Each result is what its rule says, of the points that were measured; it is no local length."),
         words(
@@ -334,7 +340,7 @@ def limits_of_inspection(
 
 
 def limits_of_cloud(words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
-    """What no cloud of this instrument covers; `temperatures`: whether they are stated."""
+    """List what no cloud of this instrument covers; `temperatures`: whether they are stated."""
     return (
         words(
             "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "
@@ -353,7 +359,7 @@ def _temperatures_used(words: Words) -> str:
 
 
 def limit_of_temperature(stated: bool, words: Words = ENGLISH) -> str:
-    """What a temperature, stated or not, did not do."""
+    """Write what a temperature, stated or not, was not used for."""
     if stated:
         return words("Temperatures are those the operator stated; nothing is corrected to 20 °C.")
     return words("Temperature was not measured; nothing is corrected to 20 °C.")
@@ -362,7 +368,10 @@ def limit_of_temperature(stated: bool, words: Words = ENGLISH) -> str:
 def temperatures_line(
     air_celsius: float | None, part_celsius: float | None, words: Words = ENGLISH, *, corrected: bool = False
 ) -> str:
-    """'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made', or nothing where neither is known."""
+    """Write the temperatures: 'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made'.
+
+    "" where neither is known.
+    """
     known = {label("air {value}"): air_celsius, label("part {value}"): part_celsius}
     shown = [words(name, value=f"{words.fixed(value, 1)} °C") for name, value in known.items() if value is not None]
     if not shown or corrected:
@@ -371,7 +380,7 @@ def temperatures_line(
 
 
 def target_in_words(target: Target, words: Words = ENGLISH) -> str:
-    """'checkerboard, 17 × 12 inner corners, 10 mm'."""
+    """Describe a target: 'checkerboard, 17 × 12 inner corners, 10 mm'."""
     if isinstance(target, Checkerboard):
         corners = words("inner corners")
         size = f"{words.general(target.square_mm)} mm"

@@ -18,7 +18,7 @@ Value: TypeAlias = float | str | Message | None
 
 
 class Reader(IntEnum):
-    """Whom a fact is for: each reads those of the readers before as well."""
+    """Reader whom a fact is for: each reads those of the readers before as well."""
 
     TECHNICIAN = 1
     AUDITOR = 2
@@ -27,7 +27,7 @@ class Reader(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One thing that is told of a result.
+    """Fact of a result: its name, value, unit and meaning.
 
     Parameters
     ----------
@@ -84,16 +84,16 @@ class Fact:
         return decimals_of(self.sd) if self.sd is not None and self.sd > 0 else self.digits
 
     def title(self, words: Words) -> str:
-        """What it is called, with the coverage of its interval: 'Cg (95 %)'."""
+        """Write the name, with the coverage of its interval: 'Cg (95 %)'."""
         label = words.known(self.label)
         return label if self.interval is None else words("{quantity} (95 %)", quantity=label)
 
     def heading(self, words: Words) -> str:
-        """The same at the head of a row."""
+        """Write the name at the head of a row."""
         return heading(self.title(words))
 
     def text(self, words: Words) -> str:
-        r"""Value, uncertainty, unit and interval in the reader's language.
+        r"""Write value, uncertainty, unit and interval in the reader's language.
 
         Examples
         --------
@@ -115,7 +115,7 @@ class Fact:
         return words("{value} ({low} to {high})", value=said, low=low, high=high)
 
     def parts(self, words: Words) -> tuple[str, str]:
-        r"""Value and uncertainty as columns of a table have them, without the unit; "" for an uncertainty there is not.
+        r"""Write value and uncertainty as columns of a table, without the unit; "" for a missing uncertainty.
 
         Examples
         --------
@@ -130,7 +130,7 @@ class Fact:
         return self._number(self.value, words), sd
 
     def column(self, words: Words) -> str:
-        """What the column of `parts` is called: its name with the unit."""
+        """Write the head of the column of `parts`: the name with the unit."""
         title = self.title(words)
         return words.in_unit(title, self.unit) if self.unit else title
 
@@ -152,7 +152,7 @@ class Fact:
 
 
 def heading(name: str) -> str:
-    """What a row or a column is called at its head: with a capital, but for a symbol, which is a letter alone.
+    """Write the head of a row or a column: with a capital, except for a symbol, which is a letter alone.
 
     Examples
     --------
@@ -163,10 +163,10 @@ def heading(name: str) -> str:
 
 
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:
-    """The facts that a reader is told."""
+    """Select the facts that are for a reader."""
     return tuple(fact for fact in facts if fact.level <= reader)
 
 
 def named(of: str | Message, facts: Iterable[Fact]) -> tuple[Fact, ...]:
-    """The same facts where several results are told of: each is called by what it is `of` as well."""
+    """Add to the name of each fact the result it is `of`, where facts of several results are listed."""
     return tuple(replace(fact, label=Message("told.named", "{of}, {name}", of=of, name=fact.label)) for fact in facts)

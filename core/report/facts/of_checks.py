@@ -24,7 +24,7 @@ ALLOWED_FROM, ALLOWED_TO = label("allowed from"), label("allowed to")
 
 
 class Check(Protocol):
-    """An interim check, as `core.files.results.check_file.InterimCheck`."""
+    """Interim check, as `core.files.results.check_file.InterimCheck`."""
 
     @property
     def calibration_id(self) -> str: ...
@@ -49,7 +49,7 @@ class Check(Protocol):
 
 
 def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, ...]:
-    """How far off camera and laser are; `chart` are the limits for it by the rig's history."""
+    """Make the facts of how far off camera and laser are; `chart` are the limits by the rig's history."""
     facts = [
         used_fact(label("pictures"), check.poses, label("Pictures that say something, and all there are")),
         Fact(
@@ -76,7 +76,7 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
 
 
 class PastCheck(Protocol):
-    """A check of a rig's history, as `core.files.results.rig_history.PastCheck`."""
+    """Check of a rig's history, as `core.files.results.rig_history.PastCheck`."""
 
     @property
     def taken_at(self) -> datetime: ...
@@ -103,14 +103,17 @@ class PastCheck(Protocol):
 
 
 def history_fact(rig: str, checks: int) -> Fact:
-    """Whose history it is, and how many checks are in it."""
+    """Make the fact of whose history it is, and how many checks are in it."""
     of = plural_message("told.rig", "{name}: {n:,} check", "{name}: {n:,} checks", n=checks, name=rig)
     never = Message("told.never_checked", "{name}: never checked on this computer", name=rig)
     return Fact(label("rig"), of if checks else never)
 
 
 def history_table(checks: Iterable[tuple[PastCheck, ControlChart]]) -> FactTable:
-    """Each check of a rig, and the limits of its chart: what came of it, and by how much a step was off."""
+    """Make the table of the checks of a rig with the limits of its chart.
+
+    The result, and by how much a step was off.
+    """
     columns = (
         Column(label("pictures taken")),
         Column(VERDICT),
@@ -167,7 +170,7 @@ def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
 
 
 def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
-    """What a re-adjustment changes, how sure that is, and what it does."""
+    """Make the facts of a re-adjustment: what it changes, how certain that is, and its effect."""
     record = done.record
     was_chance = Message("told.was_chance", "{what}; before: {p:.2g}", what=PROBABILITY, p=record.p_before)
     return (
@@ -211,7 +214,7 @@ def _changes(done: ProposedReadjustment) -> tuple[Fact, ...]:
 
 
 def artefact_facts(check: ArtefactCheck) -> tuple[Fact, ...]:
-    """What was measured of an artefact, and how that agrees with its certificate."""
+    """Make the facts of a measured artefact, and how it agrees with its certificate."""
     known, U = check.artefact, 2 * check.u_mm
     due = label("not stated") if known.due is None else known.due.isoformat()
     return (

@@ -23,7 +23,7 @@ class ChangedPart(Protocol):
 
 
 class Compared(Protocol):
-    """A comparison in short, as `core.files.results.comparison_file.ComparisonFile`."""
+    """Summary of a comparison, as `core.files.results.comparison_file.ComparisonFile`."""
 
     @property
     def other(self) -> str: ...
@@ -44,7 +44,7 @@ class Compared(Protocol):
 
 
 def comparison_facts(found: Compared) -> tuple[Fact, ...]:
-    """With what the scan was compared, where it differs, and from where on that would be seen."""
+    """Make the facts of a comparison: with what, where it differs, and from which deviation on that is detected."""
     return (
         Fact(label("compared with"), plain(found.other)),
         Fact(label("aligned"), ALIGNED[found.alignment], level=Reader.AUDITOR),

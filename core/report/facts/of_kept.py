@@ -19,7 +19,7 @@ _ACCEPTED, _ID, _STATE = Column(label("accepted")), Column(label("id")), Column(
 
 
 class KeptCalibration(Protocol):
-    """A kept calibration in short, as `core.files.project.calibration_store.StoredCalibration`."""
+    """Summary of a stored calibration, as `core.files.project.calibration_store.StoredCalibration`."""
 
     @property
     def id(self) -> str: ...
@@ -38,13 +38,13 @@ class KeptCalibration(Protocol):
 
 
 def kept_cameras(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
-    """Cameras, `in_use` being the id of one of them or ""."""
+    """Make the table of stored cameras; `in_use` is the id of one of them or ""."""
     columns = (_ACCEPTED, Column(CORNERS, "px", 3), Column(label("views")), _ID, _STATE)
     return FactTable(columns, tuple((*_about(one, one.rms_px), plain(one.id), _state(one, in_use)) for one in kept))
 
 
 def kept_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
-    """Light planes, each with the camera it rests on."""
+    """Make the table of stored light planes, each with the camera it rests on."""
     lines = range(max((len(one.rms_mm) for one in kept), default=0))
     of_lines = (Column(Message("told.rms_of_line", "RMS of line {number}", number=n + 1), "mm", 3) for n in lines)
     columns = (_ACCEPTED, *of_lines, Column(label("poses")), _ID, Column(label("camera")), _STATE)
@@ -61,7 +61,10 @@ def kept_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
 
 
 def change_cells(changes: CameraChanges) -> tuple[tuple[Fact, ...], ...]:
-    """Both values of each parameter, the change and its standard deviation; of corners and views both values alone."""
+    """Make the cells of both values of each parameter, the change and its standard deviation.
+
+    Of views both values alone.
+    """
     rows: list[tuple[Fact, ...]] = [
         tuple(Fact(CORNERS, value, "px", 3) for value in changes.rms_px),
         tuple(Fact(label("views"), value) for value in changes.views),

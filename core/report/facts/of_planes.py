@@ -19,13 +19,13 @@ _HELD = 1e-9
 
 
 def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
-    """How well the stripes lie on their planes, the planes, and all else that is told of them."""
+    """Make the facts of the light planes: how well the stripes fit them, the planes, and all others."""
     lines = (named(line_name(n), cells) for n, cells in enumerate(plane_cells(calibration), start=1))
     return (*chain(*lines), *rest_of_planes(calibration))
 
 
 def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
-    """What is told of all planes together."""
+    """Make the facts of all planes together."""
     facts = [used_fact(label("poses"), calibration.poses, label("Poses used, and all there are"), POSES)]
     if math.isfinite(calibration.pencil_gap_mm):
         tip = label("Largest distance of the free planes from those of one pencil, within the work volume")
@@ -50,12 +50,12 @@ def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
 
 
 def line_name(number: int) -> Message:
-    """What a line of the fan and its light plane are called."""
+    """Return the name of a line of the fan and its light plane."""
     return Message("told.line", "line {number}", number=number)
 
 
 def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
-    """Of each light plane its fit, normal and distance, and the angles to the next plane, which the last one lacks."""
+    """Make the cells of each light plane: fit, normal and distance, and the angle to the next plane, if any."""
     about = label("Root mean square distance of the points on this line from its plane")
     held = label("Angle between neighbouring planes that are held to one pencil")
     free = label("The same where each plane is calibrated on its own (± standard deviation)")
@@ -100,14 +100,17 @@ def _angle_digits(sd: float) -> int | None:
 
 
 def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:
-    """Whether the laser is the pencil it is said to be, and what a check has moved."""
+    """Make the sentences on whether the laser is the stated pencil, and on what a check has moved."""
     verdict = calibration.verdict
     moved = () if calibration.readjusted is None else (calibration.readjusted.note,)
     return (*(() if verdict is None else (Message("told.sentence", "{what:capital}.", what=verdict),)), *moved)
 
 
 def told_of_pose(pose: PlanePose) -> Message:
-    """How well one pose fits and how many lines it shows, or why it is left out and how far off it is."""
+    """Make the sentence of how well a pose fits and how many lines it shows.
+
+    Or why it is left out and how far off it is.
+    """
     if pose.used:
         return plural_message(
             "told.pose",

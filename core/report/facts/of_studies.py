@@ -47,7 +47,7 @@ _OF_INDICES = {
 
 
 def study_title(study: Study, words: Words = ENGLISH) -> str:
-    """What a study is called: 'Gauge R&R', 'Series: thickness'."""
+    """Return the title of a study: 'Gauge R&R', 'Series: thickness'."""
     kind = words(KINDS[kind_of(study)])
     if not isinstance(study, (RepeatStudy, SeriesStudy)):
         return kind
@@ -55,7 +55,7 @@ def study_title(study: Study, words: Words = ENGLISH) -> str:
 
 
 def study_facts(study: Study) -> tuple[Fact, ...]:
-    """All that is told of a study, its verdict first."""
+    """Make the facts of a study, its verdict first."""
     match study:
         case RepeatStudy():
             facts = _of_repeats(study)
@@ -71,12 +71,12 @@ def study_facts(study: Study) -> tuple[Fact, ...]:
 
 
 def verdict_fact(verdict: str) -> Fact:
-    """What was decided, on a part or by a study."""
+    """Make the fact of a decision, on a part or by a study."""
     return Fact(VERDICT, _decision(verdict) or NO_LIMIT, grade=_GRADES.get(verdict, ""))
 
 
 def study_tables(study: Study) -> tuple[FactTable, ...]:
-    """What is told of a study in rows and columns, the table that is looked at first before the others."""
+    """Make the tables of a study, the most important one first."""
     match study:
         case RepeatStudy():
             return (_contributions(study.budget),)
@@ -91,14 +91,17 @@ def study_tables(study: Study) -> tuple[FactTable, ...]:
 
 
 def digits_of(study: Type1Study | SeriesStudy) -> int:
-    """Decimals of its values: one more than their scatter has."""
+    """Return the decimals of its values: one more than their scatter has."""
     return max(decimals_of(study.s) + 1, LEAST_DIGITS)
 
 
 def repeat_facts(
     statistics: RepeatStatistics, unit: str = "mm", nominal: float | None = None, digits: int = LEAST_DIGITS
 ) -> list[Fact]:
-    """Mean, bias, standard deviation, largest error and RMSE of repeats, all in `unit`, with `digits` or more."""
+    """Make the facts of repeats: mean, bias, standard deviation, largest error and RMSE.
+
+    In `unit`, with `digits` or more.
+    """
     digits = max(decimals_of(statistics.std_mm), digits)
     several = math.isfinite(statistics.std_mm)
     about_bias, about_rmse = label("Mean less the nominal value"), label("Root mean square of the single errors")
@@ -373,7 +376,7 @@ def _control_limits(study: SeriesStudy) -> tuple[FactTable, ...]:
 
 
 def chart_names(study: SeriesStudy) -> tuple[str, str]:
-    """What the points of the two control charts of a series are called."""
+    """Return the names of the points of the two control charts of a series."""
     return (label("value"), label("moving range")) if study.size == 1 else (label("X̄"), label("s"))
 
 

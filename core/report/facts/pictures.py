@@ -19,29 +19,29 @@ NAMES_SHOWN = 3
 
 
 class Picture(Protocol):
-    """A view, pose or frame; one that was left out may say why."""
+    """View, pose or frame; one that was left out may have a reason."""
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the picture."""
 
     @property
     def used(self) -> bool:
-        """Whether it counts."""
+        """Whether the picture counts."""
 
     @property
     def reason(self) -> Message | None:
-        """Why it was left out."""
+        """Reason why it was left out; None if it was not, or none is known."""
 
 
 class LeftOut(NamedTuple):
-    """A reason, and the names of the pictures left out for it."""
+    """Reason, with the names of the pictures left out for it."""
 
     reason: Message
     names: list[str]
 
     def line(self, most: int = NAMES_SHOWN) -> Message:
-        """How many, why, and which: at most so many names."""
+        """Write how many pictures, why, and which: at most so many names."""
         shown = [name.rpartition("/")[2] for name in self.names[:most]]
         names = (*shown, *(["…"] if len(self.names) > most else []))
         return Message(
@@ -51,7 +51,7 @@ class LeftOut(NamedTuple):
 
 
 def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
-    """Why pictures were left out, the commonest reason first."""
+    """Group the pictures left out by their reason, the commonest first."""
     reasons: dict[Message, list[str]] = {}
     for picture in pictures:
         if not picture.used:
@@ -60,7 +60,7 @@ def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
 
 
 def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | None = None) -> Fact:
-    """How many pictures are used, and whether they are enough."""
+    """Make the fact of how many pictures are used, and whether they are enough."""
     used = sum(picture.used for picture in pictures)
     value = Message("told.used", "{used:,} of {all:,}", used=used, all=len(pictures))
     if limit is None:
@@ -69,12 +69,12 @@ def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | N
 
 
 def grade(limit: Limit, value: float) -> Grade:
-    """Whether a value is good by the limit of a calibration."""
+    """Grade a value by the limit of a calibration."""
     return _GRADES[limit.grade(value)]
 
 
 def limits_tip(tip: str, good: float, poor: float, unit: str = "") -> Message:
-    """What a value means, and from where on it is good and below which it is poor."""
+    """Make the tip of what a value means, from where on it is good and below which it is poor."""
     return Message(
         "told.limits", "{what}. Good from {good:.0f}{unit} on, poor below {poor:.0f}{unit}",
         what=tip, good=good, poor=poor, unit=unit,

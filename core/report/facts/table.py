@@ -13,7 +13,7 @@ from core.report.wording import Words
 
 @dataclass(frozen=True, slots=True)
 class Uncertain:
-    """A number of a table whose uncertainty, which stands elsewhere, decides how many decimals are shown.
+    """Number of a table with its uncertainty, shown elsewhere, which decides its decimals.
 
     `sd` is standard or expanded, as where the number is told with it, in the column's unit.
     """
@@ -28,7 +28,7 @@ Cell: TypeAlias = Value | Uncertain
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What the values of a column are: the fields of a `Fact` but its value."""
+    """Column of a table: the fields of a `Fact` but its value."""
 
     label: str | Message
     unit: str = ""
@@ -39,7 +39,7 @@ class Column:
     signed: bool = False
 
     def fact(self, cell: Cell) -> Fact:
-        """One of its values."""
+        """Make the fact of one of its values."""
         value, digits = (cell.value, decimals_of(cell.sd)) if isinstance(cell, Uncertain) else (cell, self.digits)
         return Fact(
             self.label, value, self.unit, digits, self.tip, self.level,
@@ -49,7 +49,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class FactTable:
-    """What is told in rows and columns.
+    """Facts in rows and columns.
 
     Parameters
     ----------
@@ -69,13 +69,13 @@ class FactTable:
     level: Reader = Reader.TECHNICIAN
 
     def for_reader(self, reader: Reader) -> FactTable:
-        """The columns that a reader is told."""
+        """Select the columns that are for a reader."""
         places = [place for place, column in enumerate(self.columns) if column.level <= reader]
         rows = tuple(tuple(row[place] for place in places) for row in self.rows)
         return replace(self, columns=tuple(self.columns[place] for place in places), rows=rows)
 
     def texts(self, words: Words) -> list[list[str]]:
-        """The cells of each row without their units, which stand in the heads; "" where there is no value."""
+        """Write the cells of each row without their units, which are in the heads; "" where there is no value."""
         return [
             [
                 "" if value is None else replace(column.fact(value), unit="").text(words)
@@ -85,11 +85,11 @@ class FactTable:
         ]
 
     def lines(self, words: Words) -> list[tuple[str, str]]:
-        """Each row in one line: its name, and its values with what they are called, 'σ 0.306 mm, of T 22.7 %'."""
+        """Write each row in one line: its name, and its values with their names, 'σ 0.306 mm, of T 22.7 %'."""
         return [(self._name(row, words), words.joined(self._said(row, words))) for row in self.rows]
 
     def facts(self, words: Words) -> tuple[Fact, ...]:
-        """Each value by itself, called by its row and its column: 'gauge R&R: σ'."""
+        """Make a fact of each value, named by its row and its column: 'gauge R&R: σ'."""
         return tuple(
             replace(
                 column.fact(value),
@@ -117,5 +117,5 @@ class FactTable:
 
 
 def tables_for_reader(tables: Iterable[FactTable], reader: Reader) -> tuple[FactTable, ...]:
-    """The tables that a reader is told, with the columns that are for this reader."""
+    """Select the tables that are for a reader, with their columns for this reader."""
     return tuple(table.for_reader(reader) for table in tables if table.level <= reader)

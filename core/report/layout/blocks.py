@@ -22,7 +22,7 @@ from core.report.wording import grouped
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How many rows the long lists may have, the rest being 'and n more', and how large the pictures are."""
+    """Limits of the long lists, the rest being 'and n more', and the size of the pictures."""
 
     inputs: int
     reasons: int
@@ -39,7 +39,7 @@ LEAST_SCALE = 0.72
 
 
 class Picture(Flowable):  # type: ignore[misc]
-    """A picture of the text's width times `scale`, centred."""
+    """Picture of the text's width times `scale`, centred."""
 
     def __init__(self, reader: ImageReader, scale: float) -> None:
         super().__init__()
@@ -49,23 +49,23 @@ class Picture(Flowable):  # type: ignore[misc]
 
     @property
     def spare(self) -> float:
-        """Points of height that it can do without."""
+        """Height in points by which the picture can shrink."""
         spare: float = self.height * (1 - LEAST_SCALE * TEXT_WIDTH / self.inner)
         return max(0.0, spare)
 
     def shrink(self, points: float) -> None:
-        """Take so much off its height, in proportion."""
+        """Reduce the height by so many points, in proportion."""
         share = 1 - points / self.height
         self.inner, self.height = self.inner * share, self.height * share
 
     def draw(self) -> None:
-        """Paint it (called by reportlab)."""
+        """Paint the picture (called by reportlab)."""
         left = (self.width - self.inner) / 2
         self.canv.drawImage(self.reader, left, 0, width=self.inner, height=self.height)
 
 
 class Bookmark(Flowable):  # type: ignore[misc]
-    """A place that links lead to, named in the outline beside the pages; `level` 0 for sections, 1 within them."""
+    """Target of links, named in the outline beside the pages; `level` 0 for sections, 1 within them."""
 
     width = height = 0
 
@@ -74,38 +74,38 @@ class Bookmark(Flowable):  # type: ignore[misc]
         self.key, self.title, self.level = key, title, level
 
     def wrap(self, *_: float) -> tuple[float, float]:
-        """It takes no room (called by reportlab)."""
+        """Take no room (called by reportlab)."""
         return 0, 0
 
     def draw(self) -> None:
-        """Note the place (called by reportlab)."""
+        """Register the place (called by reportlab)."""
         self.canv.bookmarkHorizontal(self.key, 0, 12)
         self.canv.addOutlineEntry(self.title, self.key, self.level)
 
 
 class Heading(Paragraph):
-    """A heading that links lead to. The bookmark is its own: before it, its space above would not be counted."""
+    """Heading that is a target of links. The bookmark is its own: before it, its space above would not be counted."""
 
     def __init__(self, look: ReportLook, key: str, title: str, style: str = "section", level: int = 0) -> None:
         super().__init__(look.markup(title), look.style(style))
         self.key, self.title, self.level = key, title, level
 
     def split(self, *_: float) -> list[Flowable]:
-        """It stays in one piece (called by reportlab)."""
+        """Stay in one piece (called by reportlab)."""
         return []
 
     def draw(self) -> None:
-        """Note the place and paint it (called by reportlab)."""
+        """Register the place and paint it (called by reportlab)."""
         self.canv.bookmarkHorizontal(self.key, 0, self.height)
         self.canv.addOutlineEntry(self.title, self.key, self.level)
         super().draw()
 
 
 class OnOnePage(KeepTogether):  # type: ignore[misc]
-    """What stays together; its pictures become smaller where that keeps it on a page that is begun already."""
+    """Flowables kept together; their pictures shrink where that keeps them on a page that is begun already."""
 
     def least_height(self, width: float) -> float:
-        """Points of height it wants at least."""
+        """Compute the least height in points."""
         self.wrap(width, 0)
         height: float = self._H - self._spare
         return height
@@ -119,7 +119,7 @@ class OnOnePage(KeepTogether):  # type: ignore[misc]
         return sum(one.spare for one in self._pictures)
 
     def split(self, width: float, height: float) -> list[Flowable]:
-        """Begin a page only if smaller pictures would not do (called by reportlab)."""
+        """Begin a page only if smaller pictures are not enough (called by reportlab)."""
         self.wrap(width, height)
         spare, lack = self._spare, self._H - height
         if not 0 < lack < spare:
@@ -132,14 +132,14 @@ class OnOnePage(KeepTogether):  # type: ignore[misc]
 
 
 class Sections(KeepTogether):  # type: ignore[misc]
-    """Sections in their order, but where the next one does not fit on a page, one that does goes before."""
+    """Sections in their order; where the next one does not fit on a page, one that does is moved before it."""
 
     def __init__(self, sections: Sequence[OnOnePage]) -> None:
         super().__init__(list(sections))
         self.sections = list(sections)
 
     def split(self, width: float, height: float) -> list[Flowable]:
-        """The first one that fits, if need be on a new page, and the rest (called by reportlab)."""
+        """Place the first one that fits, if need be on a new page, and then the rest (called by reportlab)."""
         for one in self.sections:
             one.canv, one._frame = self.canv, getattr(self, "_frame", None)
         fitting = (one for one in self.sections if one.least_height(width) <= height)
@@ -149,7 +149,7 @@ class Sections(KeepTogether):  # type: ignore[misc]
 
 
 def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> OnOnePage:
-    """A heading that stays with what follows it; `heading` is fixed words, `key` what links call it."""
+    """Make a heading that stays with what follows it; `heading` is fixed words, `key` is the target of links."""
     title = look.words(heading, **values)
     return OnOnePage([Heading(look, key, title), *first])
 
@@ -171,12 +171,12 @@ Cell: TypeAlias = "Flowable | list[Flowable] | str"
 
 
 def plain_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Table:
-    """Cells without any rule."""
+    """Make a table without any rule."""
     return Table(rows, colWidths=widths, style=TableStyle(PLAIN), hAlign="LEFT")
 
 
 def ruled_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Table:
-    """A head row under which a rule runs, a hairline below each further row."""
+    """Make a table with a rule under the head row and a hairline below each further row."""
     style = [
         *PLAIN,
         ("LINEBELOW", (0, 0), (-1, 0), 0.6, color(MUTED)),
@@ -186,7 +186,7 @@ def ruled_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Tabl
 
 
 def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Flowable]:
-    """A head row of fixed words ("" for none); those at `numbers` stand to the right."""
+    """Make a head row of fixed words ("" for none); those at `numbers` are aligned to the right."""
     return [
         look.text("" if not word else look.words(word), "head_number" if place in numbers else "head")
         for place, word in enumerate(words)
@@ -194,14 +194,14 @@ def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Fl
 
 
 def pairs_table(look: ReportLook, pairs: Mapping[str, str], width: float, label_width: float) -> Table:
-    """Label and value, one pair a row."""
+    """Make a table of label and value, one pair a row."""
     rows = [[look.text(label, "label"), look.text(value, "small")] for label, value in pairs.items()]
     nothing = [[look.say("none", "small"), look.text("", "small")]]
     return plain_table(rows or nothing, [label_width, width - label_width])
 
 
 def side_by_side(left: list[Flowable], right: list[Flowable], width: float, share: float = 0.5) -> Table:
-    """Two columns with a gap between them; `share` of the rest is the left one's."""
+    """Make two columns with a gap between them; `share` of the rest is the left one's."""
     inner = (width - GAP) * share
     style = TableStyle([*PLAIN, ("RIGHTPADDING", (0, 0), (-1, -1), 0), ("TOPPADDING", (0, 0), (-1, -1), 0)])
     return Table(
@@ -210,14 +210,14 @@ def side_by_side(left: list[Flowable], right: list[Flowable], width: float, shar
 
 
 class ShareBar(Flowable):  # type: ignore[misc]
-    """A small bar whose length is a share 0…1 of `width`."""
+    """Small bar whose length is a share 0…1 of `width`."""
 
     def __init__(self, look: ReportLook, share: float, width: float) -> None:
         super().__init__()
         self.look, self.share, self.width, self.height = look, share, width, 9.4
 
     def draw(self) -> None:
-        """Paint it (called by reportlab)."""
+        """Paint the bar (called by reportlab)."""
         self.canv.setFillColor(color(TINT))
         self.canv.rect(0, 1.5, self.width, 5, stroke=0, fill=1)
         self.canv.setFillColor(self.look.accent_color)
@@ -225,14 +225,14 @@ class ShareBar(Flowable):  # type: ignore[misc]
 
 
 def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flowable]:
-    """'and 12 more, listed in run.json', or nothing; `where` in fixed words or the name of a file."""
+    """Make the line 'and 12 more, listed in run.json', or nothing; `where` in fixed words or the name of a file."""
     if left <= 0:
         return []
     return [look.say("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
 
 
 def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:
-    """What an auditor reads of a result: values with units below their names, so many a row."""
+    """Make the table of values for an auditor, with units below their names, so many a row."""
     words, told = look.words, for_reader(facts, Reader.AUDITOR)
     rows: list[list[Cell]] = []
     for start in range(0, len(told), columns):
@@ -244,7 +244,7 @@ def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:
 
 
 def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Flowable]:
-    """What an auditor reads of a result in rows and columns."""
+    """Make the tables of a result for an auditor."""
     read = tables_for_reader(tables, Reader.AUDITOR)
     return [part for table in read for part in (Spacer(0, 1 * mm), _fact_table(look, table), Spacer(0, 1 * mm))]
 
@@ -269,5 +269,5 @@ def _fact_table(look: ReportLook, table: FactTable) -> Table:
 
 
 def told(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
-    """What an auditor reads of a result: value with unit by what it is called."""
+    """Write the facts of a result for an auditor: value with unit, by its name."""
     return {fact.heading(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}

@@ -17,7 +17,7 @@ ROOM = 0.8 * mm
 
 
 class ControlFrameMark(Flowable):  # type: ignore[misc]
-    """One frame, to the left, with a little room above and below."""
+    """Feature control frame, to the left, with a little room above and below."""
 
     def __init__(self, look: ReportLook, frame: ControlFrame) -> None:
         super().__init__()
@@ -27,7 +27,7 @@ class ControlFrameMark(Flowable):  # type: ignore[misc]
         self.width, self.height = HEIGHT + sum(self.widths), HEIGHT + 2 * ROOM
 
     def draw(self) -> None:
-        """Paint it (called by reportlab)."""
+        """Paint the frame (called by reportlab)."""
         canvas = self.canv
         canvas.translate(0, ROOM)
         canvas.setStrokeColor(color(INK))

@@ -28,7 +28,7 @@ RESTRICTED, NO_SUBSET = 0x0002, 0x0300
 
 
 def converted_font(name: str, path: str) -> ttfonts.TTFont:
-    """A font for reportlab under this name.
+    """Convert a font for reportlab under this name.
 
     Raises
     ------

@@ -22,7 +22,9 @@ LEEWAY = 1e-6
 
 
 class Paragraph(platypus.Paragraph):  # type: ignore[misc]
-    """reportlab's paragraph. Where its style has ``wordWrap="CJK"`` it parts what it should not: this one does not."""
+    """Paragraph of reportlab with our rules for line ends. Where its style has ``wordWrap="CJK"`` it parts what it
+    should not: this one does not.
+    """
 
     def breakLinesCJK(self, maxWidths: Any) -> Any:
         widths = list(maxWidths) if isinstance(maxWidths, (list, tuple)) else [maxWidths]
@@ -55,7 +57,7 @@ class Paragraph(platypus.Paragraph):  # type: ignore[misc]
 
 
 def line_ends(characters: Sequence[Any], widths: Sequence[float]) -> list[int]:
-    """Where lines end, each place that of the next line's first character.
+    """Find where lines end, each place that of the next line's first character.
 
     A line is as long as it fits between two places where it may break; what has none is cut where the line is full.
     Spaces at an end stand beyond it.

@@ -62,7 +62,7 @@ _FILES = {
 
 
 def color(value: str) -> HexColor:
-    """The colour of a hex string."""
+    """Make the colour of a hex string."""
     return HexColor(value)
 
 
@@ -82,18 +82,18 @@ def _covered() -> frozenset[int]:
 
 
 def has_character(character: str) -> bool:
-    """Whether the report's own fonts have it, or it is a space of some kind."""
+    """Whether the report's own fonts have the character, or it is a space of some kind."""
     return ord(character) in _covered() or character.isspace()
 
 
 def prepare_reportlab() -> None:
-    """Make the embedded fonts known to reportlab, and let it write binary streams; further calls change nothing."""
+    """Register the embedded fonts with reportlab, and let it write binary streams; further calls change nothing."""
     _covered()
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
 def markup(text: str) -> str:
-    """`text` as markup of a Paragraph, nothing lost whatever its script, no number parted from its unit.
+    """Write `text` as markup of a Paragraph, complete in any script, with no break between a number and its unit.
 
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
     reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
@@ -116,12 +116,12 @@ def _runs(text: str) -> list[tuple[str, str]]:
 
 
 def words_width(text: str, font: str, size: float) -> float:
-    """How wide `draw_words` writes `text`, in points."""
+    """Compute the width in points in which `draw_words` writes `text`."""
     return float(sum(pdfmetrics.stringWidth(part, foreign or font, size) for foreign, part in _runs(text)))
 
 
 def draw_words(canvas: Any, place: tuple[float, float], text: str, font: str, size: float, share: float = 0.0) -> None:
-    """Write `text` on the page, whatever its script; `share` of its width stands left of `place` (x, y), in points."""
+    """Write `text` on the page, in any script; `share` of its width is left of `place` (x, y), in points."""
     x, y = place[0] - share * words_width(text, font, size), place[1]
     for foreign, part in _runs(text):
         canvas.setFont(foreign or font, size)
@@ -135,7 +135,7 @@ def _foreign(character: str, text: str) -> str:
 
 
 def font_note(texts: Iterable[str]) -> Message | None:
-    """What a reader must know of characters in `texts`: that some are not embedded, or have no font at all."""
+    """Note that some characters in `texts` are not embedded, or have no font at all; None if all have."""
     foreign = {character for text in texts for character in text if not has_character(character)}
     lacking = {character for character in foreign if not embedded_font(character)}
     if not lacking:
@@ -159,7 +159,10 @@ EAST_ASIAN = ("zh", "ja", "ko")
 
 @cache
 def styles_of(accent: str, *, east_asian: bool = False) -> Mapping[str, ParagraphStyle]:
-    """Every type style of the report, by name; headings in `accent`; `east_asian` lines do not begin with a stop."""
+    """Make every type style of the report, by name; headings in `accent`.
+
+    `east_asian` lines do not begin with a stop.
+    """
     if east_asian:
         return {name: style.clone(name, wordWrap="CJK") for name, style in styles_of(accent).items()}
     return {
@@ -193,7 +196,7 @@ def styles_of(accent: str, *, east_asian: bool = False) -> Mapping[str, Paragrap
 
 @dataclass(frozen=True, slots=True)
 class ReportLook:
-    """How one report looks and speaks.
+    """Colours, type and language of one report.
 
     Parameters
     ----------
@@ -208,26 +211,26 @@ class ReportLook:
 
     @property
     def accent_color(self) -> HexColor:
-        """The accent."""
+        """Accent colour."""
         return color(self.accent)
 
     def style(self, name: str) -> ParagraphStyle:
-        """A type style by its name."""
+        """Return a type style by its name."""
         return styles_of(self.accent, east_asian=self.words.language.name.startswith(EAST_ASIAN))[name]
 
     def text(self, plain: str, style: str = "body") -> Paragraph:
-        """A paragraph of plain words: whatever they hold is printed, never taken for markup."""
+        """Make a paragraph of plain words, never taken for markup."""
         return Paragraph(self.markup(plain), self.style(style))
 
     def markup(self, plain: str) -> str:
-        """Plain words as markup of a Paragraph; what is longer than MOST_CHARACTERS is shortened, and says so."""
+        """Write plain words as markup of a Paragraph; beyond MOST_CHARACTERS they are shortened, visibly."""
         if len(plain) > MOST_CHARACTERS:
             said = self.words("(shortened from {n} characters; all of it is in run.json)", n=len(plain))
             plain = f"{plain[:MOST_CHARACTERS]}… {said}"
         return markup(plain)
 
     def lines(self, plain: str) -> list[Paragraph]:
-        """Plain words that may be long and may have line ends; an empty line is a gap."""
+        """Make paragraphs of plain words that may be long and may have line ends; an empty line is a gap."""
         if len(plain) > MOST_REMARKS:
             said = self.words("(shortened from {n} characters)", n=len(plain))
             plain = f"{plain[:MOST_REMARKS]}…\n{said}"
@@ -239,13 +242,13 @@ class ReportLook:
         return [Paragraph(markup(piece) or "\u00a0", self.style("small")) for piece in pieces]
 
     def say(self, english: str, style: str = "body", /, **values: object) -> Paragraph:
-        """A paragraph of fixed words in the report's language."""
+        """Make a paragraph of fixed words in the report's language."""
         return self.text(self.words(english, **values), style)
 
     def link(self, plain: str, key: str, style: str = "body") -> Paragraph:
-        """A paragraph of plain words that leads to the section or row called `key`."""
+        """Make a paragraph of plain words that links to the section or row called `key`."""
         return Paragraph(f'<a href="#{key}" color="{self.accent}">{self.markup(plain)}</a>', self.style(style))
 
     def bullets(self, sentences: tuple[str, ...], style: str = "bullet") -> list[Paragraph]:
-        """Each sentence behind a small bullet; "alarm": in the colour of what is grave."""
+        """Make a paragraph of each sentence behind a small bullet; "alarm": in the colour of what is grave."""
         return [Paragraph(self.markup(sentence), self.style(style), bulletText="•") for sentence in sentences]

@@ -63,7 +63,7 @@ CALLOUT_INSET = 0.006
 
 
 def height_map(accent: str) -> LinearSegmentedColormap:
-    """From pale to the accent: the shading shows the form, the colour the height."""
+    """Make the colour map from pale to the accent: the shading shows the form, the colour the height."""
     return LinearSegmentedColormap.from_list("height", ["#DDE2E5", mixed(accent, 0.5), accent])
 
 
@@ -77,7 +77,7 @@ def surface_figure(
     callouts: Sequence[Callout] = (),
     progress: Progress = silent,
 ) -> Figure:
-    """The surface, shaded and coloured by height above `plane` (None: towards the camera), with its dimensions.
+    """Draw the surface, shaded and coloured by height above `plane` (None: towards the camera), with callouts.
 
     Each callout points at its place.
     """
@@ -96,7 +96,7 @@ def surface_figure(
 def view_figure(
     look: ReportLook, content: ReportContent, view: SeenFrom, size: tuple[float, float], progress: Progress = silent
 ) -> Figure:
-    """The surface as it was left in 3D, coloured as in `surface_figure`, in a figure of `size` in mm.
+    """Draw the surface as it was left in 3D, coloured as in `surface_figure`, in a figure of `size` in mm.
 
     What was hidden then is left out. A result's words are there if its place is in sight.
     """
@@ -192,14 +192,14 @@ def _draw_footprint(axes: Axes, local: Array) -> None:
 
 
 class Callout(NamedTuple):
-    """What is said of a place (3,) of the camera frame."""
+    """Text at a place (3,) of the camera frame."""
 
     said: str
     place: Array
 
 
 def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
-    """Name, value ± U and verdict of the worst characteristic of each feature, at a point in its middle."""
+    """Make a callout of the worst characteristic of each feature, value ± U and verdict, at a point in its middle."""
     made = []
     for one, indices in content.shown_at:
         points = content.cloud.points[indices]
@@ -235,7 +235,7 @@ def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground, viewpoi
 
 
 def residual_figure(look: ReportLook, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
-    """Residuals of both faces, mean per cell, in mm of the face's own plane; one colour scale, and how they spread."""
+    """Draw the residuals of both faces, mean per cell, in mm; one colour scale, and their distribution."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         spread = np.concatenate([gauge.upper.residuals, gauge.lower.residuals])
@@ -289,7 +289,7 @@ def _spread_panel(look: ReportLook, axes: Axes, gauge: GaugeResult, limit: float
 def cloud_figure(
     look: ReportLook, cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float
 ) -> Figure:
-    """Depth and its standard uncertainty over the picture, mean per cell: what there is to show without a gauge."""
+    """Draw depth and its standard uncertainty over the picture, mean per cell, for a scan without a gauge."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         panels = (
@@ -333,7 +333,7 @@ def points_figure(
     height_mm: float,
     pairs: Sequence[PairCandidate] = (),
 ) -> Figure:
-    """The pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour of its own.
+    """Draw the pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour.
 
     Of several `pairs` of faces that could be meant, the measured one is outlined, and dashed the next best.
     """
@@ -388,7 +388,7 @@ MARKS_ACROSS = 14
 
 
 def deviation_figure(look: ReportLook, one: Deviations, width_mm: float, height_mm: float) -> Figure:
-    """Mean deviation per cell where the camera sees it, with a mark for its class, and how the deviations spread."""
+    """Draw the mean deviation per cell in the camera's view, with a mark for its class, and the distribution."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         axes = figure.add_axes((11 / width_mm, 10 / height_mm, 96 / width_mm, 1 - 12 / height_mm))

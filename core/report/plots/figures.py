@@ -57,36 +57,36 @@ RC: dict[Any, Any] = {
 
 
 def plot_style() -> AbstractContextManager[None]:
-    """The looks of the report's plots, for the time of a `with`."""
+    """Set the style of the report's plots, for the time of a `with`."""
     return matplotlib.style.context(["default", RC])
 
 
 def drawable(text: str) -> str:
-    """`text` as a plot can show it: what neither the report's font nor one of this computer has is a question mark."""
+    """Replace by a question mark what neither the report's font nor one of this computer can draw in a plot."""
     return "".join(character if has_character(character) or drawn_family(character) else "?" for character in text)
 
 
 def families(text: str) -> list[str]:
-    """Families of fonts that have all of a `drawable` text, the report's own first."""
+    """List families of fonts that have all of a `drawable` text, the report's own first."""
     foreign = dict.fromkeys(drawn_family(character) for character in text if not has_character(character))
     return [FAMILY, *(family for family in foreign if family)]
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
-    """An empty figure of this size on paper."""
+    """Make an empty figure of this size on paper."""
     figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def mixed(accent: str, share: float) -> str:
-    """The hex colour `share` of the way from white to `accent`."""
+    """Mix the hex colour `share` of the way from white to `accent`."""
     red, green, blue = (1 - share * (1 - part) for part in to_rgb(accent))
     return to_hex((red, green, blue))
 
 
 def pixels(figure: Figure, decimal: str = ".") -> NDArray[np.uint8]:
-    """The figure drawn, (H, W, 3) uint8, its axes numbered with this decimal sign.
+    """Draw the figure as (H, W, 3) uint8, its axes numbered with this decimal sign.
 
     Raises
     ------
@@ -138,14 +138,14 @@ class _Renumbered(Formatter):
 
 
 def color_scale(colormap: str | Colormap, low: float, high: float) -> ScalarMappable:
-    """Colours for values from `low` to `high`."""
+    """Map values from `low` to `high` to colours."""
     return ScalarMappable(Normalize(low, high), colormap)
 
 
 def add_color_bar(
     figure: Figure, box: tuple[float, float, float, float], colors: ScalarMappable, label: str, extend: str = "neither"
 ) -> None:
-    """A colour bar in `box` (left, bottom, width, height as shares of the figure), its label above it.
+    """Add a colour bar in `box` (left, bottom, width, height as shares of the figure), its label above it.
 
     `extend` ("neither", "max", "both") says at which ends values beyond the scale were cut to it.
     """
@@ -160,7 +160,10 @@ _CELLS = 110  # of a map along its longer side, at most
 
 
 def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappable) -> None:
-    """Mean of `values` (N,) per square cell at `positions` (N, 2) growing right and up; empty cells stay blank."""
+    """Paint the mean of `values` (N,) per square cell at `positions` (N, 2) growing right and up.
+
+    Empty cells stay blank.
+    """
     low, size = positions.min(axis=0), np.maximum(np.ptp(positions, axis=0), 1e-9)
     # few points: larger cells, about three points in each
     cell = float(size.max()) / min(_CELLS, max(8, int(np.sqrt(len(values) / 3))))
@@ -177,7 +180,7 @@ def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappabl
 
 
 def round_up(value: float) -> float:
-    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten; 1 for what is not a positive number."""
+    """Round up to 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten; 1 for what is not a positive number."""
     if not np.isfinite(value) or value <= 0:
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

@@ -32,7 +32,7 @@ def repeats_figure(
     width_mm: float,
     height_mm: float,
 ) -> Figure:
-    """Thickness of each of `repeats` with ±U over its number, their mean, the nominal value and its tolerance."""
+    """Draw the thickness of each of `repeats` with ±U over its number, their mean, the nominal value and tolerance."""
     values = [repeat.thickness_mm for repeat in repeats]
     lines = {label("mean"): float(np.mean(values))}
     if nominal_mm is not None:
@@ -52,7 +52,7 @@ def run_chart_figure(
     width_mm: float,
     height_mm: float,
 ) -> Figure:
-    """Values with ±U (nothing for none) over their number, a histogram beside them where they are enough for one.
+    """Draw values with ±U (nothing for none) over their number, and a histogram if they are enough for one.
 
     `lines` by the fixed words they are called.
     """
@@ -85,7 +85,7 @@ def run_chart_figure(
 def control_charts_figure(
     look: ReportLook, charts: Mapping[str, Chart], unit: str, width_mm: float, height_mm: float
 ) -> Figure:
-    """Control charts one above the other, by what their points are called.
+    """Draw control charts one above the other, by the names of their points.
 
     A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
     """

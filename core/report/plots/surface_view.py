@@ -29,7 +29,7 @@ LAMP = np.array([-0.45, 0.75, 0.65]) / np.linalg.norm([-0.45, 0.75, 0.65])
 
 
 def viewer_axes() -> Array:
-    """Rows: the viewer's right, up and towards-the-viewer, in the ground's frame."""
+    """Return as rows the viewer's right, up and towards-the-viewer, in the ground's frame, (3, 3)."""
     sin_a, cos_a, sin_e, cos_e = np.sin(AZIMUTH), np.cos(AZIMUTH), np.sin(ELEVATION), np.cos(ELEVATION)
     towards = np.array([sin_a * cos_e, -cos_a * cos_e, sin_e])
     right = np.array([cos_a, sin_a, 0.0])
@@ -49,12 +49,12 @@ class Viewpoint:
 
 
 def usual_viewpoint() -> Viewpoint:
-    """All of it, from the front, the left and above."""
+    """Make the default viewpoint: all of the surface, from the front, the left and above."""
     return Viewpoint(viewer_axes())
 
 
 def left_viewpoint(view: SeenFrom, ground: Ground, aspect: float) -> Viewpoint:
-    """Viewpoint of a view left in 3D, in a picture of another `aspect`: all that was in sight is."""
+    """Make the viewpoint of a view left in 3D, in a picture of another `aspect`: all that was in sight is."""
     axes = view.axes @ ground.axes.T
     x, y = (axes @ ground.local(view.focal[None])[0])[:2]
     half = view.half_height_mm * max(1.0, view.aspect / aspect)
@@ -63,7 +63,7 @@ def left_viewpoint(view: SeenFrom, ground: Ground, aspect: float) -> Viewpoint:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfacePicture:
-    """What the viewer sees.
+    """Picture of the surface from a viewpoint.
 
     `height` (H, W) in mm above the ground and `shade` (H, W) 0…1 are NaN where nothing is seen; `extent` is left,
     right, bottom, top in mm of the viewer's plane.

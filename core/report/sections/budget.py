@@ -28,7 +28,7 @@ BAR = 9 * mm
 
 
 def budget_table(look: ReportLook, one: Characteristic) -> Table:
-    """Where the uncertainty comes from, how it combines, and what that gives."""
+    """Make the table of an uncertainty budget: its sources, their combination, and the result."""
     words, facts, cells = look.words, budget_facts(one), input_cells(one)
     sources, last = facts[: len(cells)], facts[len(cells) :]
     names = [fact.column(words) if place in IN_HEAD else fact.title(words) for place, fact in enumerate(cells[0])]

@@ -21,7 +21,7 @@ HOURS_A_DAY = 24
 
 
 def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table:
-    """Id, date, age and hash of every calibration the result rests on."""
+    """Make the table of id, date, age and hash of every calibration the result rests on."""
     rows: list[list[Flowable]] = [heads(look, "Calibration", "id", "made", "age", "SHA-256 of its file")]
     for mark in content.calibrations:
         made = look.words("not known") if mark.made_at is None else look.words.time(mark.made_at)
@@ -39,7 +39,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
 
 
 def age_words(look: ReportLook, mark: CalibrationMark, content: ReportContent) -> str:
-    """'3 days', 'under 1 hour', 'not known': how old a calibration was when it was measured with."""
+    """Write the age of a calibration when it was used: '3 days', 'under 1 hour', 'not known'."""
     age = mark.age(content.timestamp)
     if age is None:
         return look.words("not known")
@@ -52,7 +52,7 @@ def age_words(look: ReportLook, mark: CalibrationMark, content: ReportContent) -
 
 
 def camera_table(look: ReportLook, calibration: CameraCalibration, width: float) -> Table:
-    """The camera's parameters with their standard deviations."""
+    """Make the table of the camera's parameters with their standard deviations."""
     words, known = look.words, any(calibration.sd.values())
     rows: list[list[Flowable]] = [heads(look, "Parameter", "value", "standard deviation", numbers=(1, 2))]
     for fact in parameter_facts(calibration):
@@ -63,7 +63,7 @@ def camera_table(look: ReportLook, calibration: CameraCalibration, width: float)
 
 
 def fan_table(look: ReportLook, calibration: FanCalibration, width: float) -> Table:
-    """The fan's planes: fit, normal, distance from the camera, and the angles to the next one."""
+    """Make the table of the fan's planes: fit, normal, distance from the camera, and the angles to the next one."""
     words, planes = look.words, plane_cells(calibration)
     columns = [fact.column(words) for fact in planes[0]]
     rows: list[list[Flowable]] = [heads(look, "Line", *columns, numbers=range(1, len(columns) + 1))]

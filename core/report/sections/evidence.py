@@ -38,7 +38,7 @@ from core.study.artefact_check import KINDS
 
 
 def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """The sections of the wings; one of another package says so."""
+    """Make the sections of the wings; one of another package is marked as such."""
     parts: list[Flowable] = []
     for number, one in enumerate(content.brought):
         body: list[Flowable] = [figures(look, one.facts, columns=4)]
@@ -51,7 +51,7 @@ def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Known artefacts measured with these calibrations, against their certificates."""
+    """Make the section of known artefacts measured with these calibrations, against their certificates."""
     if not content.artefacts:
         return []
     words = look.words
@@ -81,7 +81,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Camera, fan and rig side by side, and below since when which calibration holds."""
+    """Make the section of camera, fan and rig side by side, and since when each calibration is valid."""
     half = (TEXT_WIDTH - GAP) * 0.42
     other = TEXT_WIDTH - GAP - half
     camera: list[Flowable] = [
@@ -129,7 +129,7 @@ ALWAYS_TOLD = ("camera_target", "plane_target")
 
 
 def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """The certificate of each target and artefact by which lengths are traced to the metre; it cannot be left out."""
+    """Make the section of the certificates that trace lengths to the metre; it cannot be left out."""
     words, day = look.words, content.timestamp.date()
     traced = {
         words(title): content.certificates.get(name, Certificate())
@@ -151,7 +151,7 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Frames and calibration pictures used, and why others were not."""
+    """Make the section of frames and calibration pictures used, and why others were not."""
     used = [frame.name for frame in content.frames if frame.used]
     parts: list[Flowable] = [figures(look, content.scan_facts)]
     if not content.frames:
@@ -165,7 +165,7 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
 
 
 def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Warnings and remarks of the software; they cannot be left out."""
+    """Make the section of warnings and remarks of the software; it cannot be left out."""
     notes = content.all_notes
     if not notes:
         return []
@@ -180,13 +180,13 @@ def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 
 
 def remarks(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """The operator's own words."""
+    """Make the section of the operator's own words."""
     lines = look.lines(content.remarks) if content.remarks.strip() else []
     return [section(look, "remarks", "Remarks of the operator", list(lines[:3])), *lines[3:]] if lines else []
 
 
 def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Software and settings, and the hash over them."""
+    """Make the section of software and settings, and the hash over them."""
     known = {look.words.known(name): look.words.known(value) for name, value in content.settings.items()}
     pairs = {look.words("Software"): f"Trisect {content.version}"} | known
     shown = list(pairs.items())[: limits.settings]
@@ -206,7 +206,7 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 
 
 def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """The hash over all inputs, and, unless hidden, that of each."""
+    """Make the section of the hash over all inputs, and, unless hidden, that of each."""
     if not content.hashes:
         return [section(look, "inputs", "Inputs", [look.say("No hashes of the inputs were given.", "small")])]
     listed = "inputs" not in content.hidden
@@ -230,7 +230,7 @@ def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flo
 
 
 def end(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """The end mark, and with it what the reader does not get to see."""
+    """Make the end mark, with what the reader does not see."""
     said = look.words("End of report {report}", report=content.report_id)
     mark = Paragraph(f"— {markup(said)} —", look.style("end"))
     left_out = [look.words(heading) for name, heading in content.printable.items() if name in content.hidden]
@@ -247,7 +247,7 @@ SHORT_HASH = 10
 def left_out_table(
     look: ReportLook, reasons: list[LeftOut], width: float, most: int, most_names: int
 ) -> list[Flowable]:
-    """Reasons, how often, and which: at most `most` reasons, and of each at most `most_names` names."""
+    """Make the table of reasons, how often, and which: at most `most` reasons, with at most `most_names` names each."""
     if not reasons:
         return []
     rows: list[list[Flowable]] = [heads(look, "Left out because", "how many", "which", numbers=(1,))]
@@ -268,7 +268,7 @@ def left_out_table(
 
 
 def hash_table(look: ReportLook, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
-    """Every input by folder, with the beginning of its SHA-256; at most `most` of them.
+    """Make the table of inputs by folder, with the beginning of their SHA-256; at most `most` of them.
 
     As many columns as the longest name leaves room for.
     """

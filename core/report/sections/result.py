@@ -52,7 +52,7 @@ SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
 
 
 def result_box(look: ReportLook, content: ReportContent, width: float) -> Table:
-    """The box: of the one result, of all of them together, or of the cloud where there is none."""
+    """Make the box of the one result, of all of them together, or of the cloud where there is none."""
     inner, found = width - 2 * PADDING, content.characteristics
     verdict = content.results.verdict
     if len(found) == 1 and found[0].verdict == verdict:
@@ -167,7 +167,7 @@ DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for v
 
 
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
-    """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
+    """Make one row for each characteristic; the names of those whose numbers are in `budgets` link to their budgets."""
     keys = [budget_key(number) if number in budgets else "" for number in range(len(content.characteristics))]
     return characteristics_table(look, content, content.characteristics, keys)
 
@@ -175,7 +175,7 @@ def result_table(look: ReportLook, content: ReportContent, budgets: Collection[i
 def characteristics_table(
     look: ReportLook, content: ReportContent, shown: Sequence[Characteristic], keys: Sequence[str] = ()
 ) -> Table:
-    """One row for each characteristic, its name leading to its key, if it has one."""
+    """Make one row for each characteristic, its name linked to its key, if it has one."""
     head = heads(look, "Characteristic", *HEADS, numbers=range(1, 7))
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]
     rows += [_row(look, content, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
@@ -185,7 +185,7 @@ def characteristics_table(
 
 
 def budget_key(number: int) -> str:
-    """What links call the budget of the characteristic of this number."""
+    """Return the link key of the budget of the characteristic of this number."""
     return f"budget-{number}"
 
 
@@ -208,14 +208,14 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
 
 
 class VerdictMark(Flowable):  # type: ignore[misc]
-    """The verdict as word and form: filled with ✓, dark with ✗, outlined with ?."""
+    """Verdict as word and form: filled with ✓, dark with ✗, outlined with ?."""
 
     def __init__(self, look: ReportLook, verdict: Verdict, width: float) -> None:
         super().__init__()
         self.look, self.verdict, self.width, self.height = look, verdict, width, 10 * mm
 
     def draw(self) -> None:
-        """Paint it (called by reportlab)."""
+        """Paint the mark (called by reportlab)."""
         tone = {Verdict.CONFORMING: self.look.accent, Verdict.NONE: MUTED}.get(self.verdict, INK)
         filled = self.verdict in (Verdict.CONFORMING, Verdict.NOT_CONFORMING)
         words = f"{SIGNS[self.verdict]}  {verdict_title(self.verdict, self.look.words)}"
@@ -230,18 +230,18 @@ class VerdictMark(Flowable):  # type: ignore[misc]
 
 
 class ToleranceBar(Flowable):  # type: ignore[misc]
-    """Where a result lies in its tolerance, to scale."""
+    """Bar with the place of a result in its tolerance, to scale."""
 
     def __init__(self, look: ReportLook, scale: ToleranceScale, width: float) -> None:
         super().__init__()
         self.look, self.scale, self.width, self.height = look, scale, width, 15 * mm
 
     def x(self, value: float) -> float:
-        """Place of a deviation on paper."""
+        """Compute the place of a deviation on paper."""
         return self.width * self.scale.share(value)
 
     def draw(self) -> None:
-        """Paint it (called by reportlab)."""
+        """Paint the bar (called by reportlab)."""
         canvas, axis, scale = self.canv, 6.6 * mm, self.scale
         low, high = self.x(scale.lower), self.x(scale.upper)
         canvas.setFillColor(color("#D5E2E7"))

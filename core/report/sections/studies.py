@@ -24,7 +24,7 @@ from core.study.type1 import Type1Study
 def studies(
     look: ReportLook, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits
 ) -> list[Flowable]:
-    """Every study, each with a heading of its own."""
+    """Make the section of every study, each with a heading of its own."""
     parts: list[Flowable] = []
     for number, study in enumerate(content.studies):
         body: list[Flowable] = [
@@ -40,7 +40,7 @@ def studies(
 
 
 def run_lines(study: InOrder) -> dict[str, float]:
-    """The lines of a run chart by what they are called; only those that there are."""
+    """List the lines of a run chart by their names; only those that there are."""
     lines: dict[str, float | None]
     match study:
         case RepeatStudy():
@@ -61,7 +61,7 @@ def run_lines(study: InOrder) -> dict[str, float]:
 
 
 def control_charts(study: InOrder) -> dict[str, Chart]:
-    """The control charts of a series, by what their points are called; none where they are too few for limits."""
+    """List the control charts of a series, by the names of their points; none where they are too few for limits."""
     if not isinstance(study, SeriesStudy) or study.charts is None:
         return {}
     return dict(zip(chart_names(study), (study.charts.location, study.charts.spread), strict=True))
