@@ -65,7 +65,7 @@ def _trisect(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and leave with its exit code."""
+    """Run the command line and exit with its code."""
     # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
     os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -122,7 +122,7 @@ def _commands(_spoken: str) -> Any:
 
 
 def whole_command() -> tuple[Any, list[Brought]]:
-    """The group of all commands, those of the wings among them, and the wings that cannot be used."""
+    """Make the group of all commands, those of the wings among them, and list the wings that cannot be used."""
     command: Any = get_command(app)
     unusable = list(wings().unusable)
     for wing, origin in wings().wings:
@@ -134,7 +134,7 @@ def whole_command() -> tuple[Any, list[Brought]]:
 
 
 def with_commands(commands: Mapping[str, Any], wing: Wing) -> dict[str, Any]:
-    """All commands in the order of the help, those of a wing among them.
+    """Insert the commands of a wing into all commands, in the order of the help.
 
     Raises
     ------

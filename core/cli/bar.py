@@ -28,7 +28,7 @@ _LONG_S = 1.0
 
 @contextmanager
 def bar(job: str = "") -> Iterator[Progress]:
-    """A `Progress` that tells all of a job on standard error; Ctrl-C and what else ends a command cancels.
+    """Make a `Progress` that shows all of a job on standard error; Ctrl-C and what else ends a command cancels.
 
     `job` is its name in `USUAL_S`, if it is one of these.
     """
@@ -43,12 +43,12 @@ def bar(job: str = "") -> Iterator[Progress]:
 
 
 def tells_lines() -> bool:
-    """Whether stages are told as lines: off a terminal, unless nothing is to be said."""
+    """Whether stages are shown as lines: off a terminal, unless the command is quiet."""
     return not is_quiet() and not sys.stderr.isatty()
 
 
 def lines_of(name: str) -> AbstractContextManager[Progress]:
-    """A `Progress` of one of several jobs at a time: a line with its name for each stage that ends."""
+    """Make a `Progress` of one of several jobs at a time: a line with its name for each stage that ends."""
     return _lines(0.0, begun=False, of=name)
 
 

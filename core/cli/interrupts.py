@@ -25,7 +25,7 @@ CODES = {
 
 
 class Interrupts:
-    """Remembers the signal that has asked a command to end; 0 if none has."""
+    """Record of the signal that has asked a command to end; 0 if none has."""
 
     def __init__(self) -> None:
         self.signal = 0
@@ -39,11 +39,11 @@ class Interrupts:
 
     @property
     def code(self) -> ExitCode:
-        """What the command leaves with."""
+        """Exit code of the command."""
         return CODES.get(self.signal, ExitCode.INTERRUPTED)
 
     def interrupt(self, signum: int, frame: FrameType | None) -> None:
-        """Take a signal: remember it, and raise KeyboardInterrupt.
+        """Handle a signal: record it, and raise KeyboardInterrupt.
 
         A terminal that is closed sends SIGHUP twice: while a command ends in order only Ctrl-C cuts that short.
         """
@@ -61,7 +61,7 @@ _taken: Interrupts | None = None
 
 @contextmanager
 def interruptible() -> Iterator[Interrupts]:
-    """Remember what asks the command to end besides raising KeyboardInterrupt; within another one, that is used.
+    """Record the signals that end the command besides raising KeyboardInterrupt; within another one, that is used.
 
     Python drops an exception that falls into a finaliser or a callback of compiled code, and the job would go on.
     """

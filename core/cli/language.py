@@ -51,7 +51,7 @@ _spoken: Language = ENGLISH
 
 
 def choose(words: Sequence[str]) -> None:
-    """Speak the language that was asked for in the words of a command line, or that of the surroundings.
+    """Set the language named in the words of a command line, or else that of the environment.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def choose(words: Sequence[str]) -> None:
 
 
 def speak_as(name: str, loudness: talk.Loudness) -> None:
-    """Speak the language of this name so loudly: in another process of a command, as it does."""
+    """Set the language of this name and the loudness: in another process of a command."""
     if name != _spoken.name:
         choose([f"{OPTION}={name}"])
     if loudness != talk.loudness():
@@ -76,7 +76,7 @@ def speak_as(name: str, loudness: talk.Loudness) -> None:
 
 
 def choose_loudness(loudness: talk.Loudness) -> None:
-    """Say so much from now on; of each file that is read if that is much."""
+    """Set the loudness from now on; if verbose, each file that is read is printed."""
     talk.choose(loudness)
     listen((lambda path: talk.say(tr("file read: {file}", file=path))) if talk.is_verbose() else None)
 
@@ -108,24 +108,24 @@ def _asked_for(words: Sequence[str]) -> str:
 
 
 def spoken() -> Language:
-    """The language that was chosen."""
+    """Return the chosen language."""
     return _spoken
 
 
 def tr(english: str, /, **values: Any) -> str:
-    """Fixed words of the command line, with values in their places: `tr("{n} triangles", n=3)`."""
+    """Translate fixed words of the command line, with values in their places: `tr("{n} triangles", n=3)`."""
     return _spoken.label(english, **values)
 
 
 def told(said: Message | InputError | str) -> str:
-    """What core has to say; fixed words of its own where they are known; anything else as it is."""
+    """Translate a message or error of core, or known fixed words; anything else stays as it is."""
     if isinstance(said, InputError):
         return said.told(_spoken)
     return _spoken(said) if isinstance(said, Message) else _spoken.label(str(said))
 
 
 def speak(command: Any, values: Mapping[str, str]) -> Any:
-    """Put the help of a command, its options and all commands within it into the language; `values` fill its places."""
+    """Translate the help of a command, its options and all commands within it; `values` fill its places."""
     from core.translations import languages
 
     values, everywhere = {**values, "languages": ", ".join(languages())}, _taken_everywhere()
@@ -147,7 +147,7 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
 
 
 def name_panels() -> None:
-    """Put Typer's own words in help into the language."""
+    """Translate Typer's own words in help."""
     if _spoken is ENGLISH and "typer.rich_utils" not in sys.modules:
         return  # it costs a start, and speaks English by itself
     from typer import rich_utils

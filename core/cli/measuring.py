@@ -61,7 +61,7 @@ from core.study.artefact_check import ArtefactCheck
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Shown:
-    """What a command says when it is done."""
+    """Output of a command that is done: rows, notes, files and JSON."""
 
     rows: output.Rows
     values: Mapping[str, Any]
@@ -69,7 +69,7 @@ class Shown:
     files: Mapping[str, Path] = field(default_factory=dict)
 
     def show(self, *, as_json: bool) -> None:
-        """Print it, for people or for machines."""
+        """Print the output, for people or for machines."""
         if as_json:
             output.print_json(
                 {**self.values, "notes": output.notes_json(self.notes), "files": output.files_json(self.files)}
@@ -79,23 +79,23 @@ class Shown:
 
 
 def timed(progress: Progress, wanted: bool) -> Progress:
-    """The progress, which learns what the stages cost if that is `wanted`."""
+    """Wrap the progress to record the time of the stages if that is `wanted`."""
     return StageTimes(progress) if wanted else progress
 
 
 def show_times(progress: Progress) -> None:
-    """Say on standard error what the stages have cost, if that was wanted."""
+    """Print the time of the stages on standard error, if that was wanted."""
     if isinstance(progress, StageTimes):
         output.print_times(progress.seconds(), progress.wall_s)
 
 
 def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
-    """The code of a verdict; "" where none was asked for."""
+    """Return the exit code of a verdict; "" where none was asked for."""
     return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
 def tell_of_cache() -> None:
-    """Say where compiled code goes, if that is wanted, and that it is lost at the end, if it is."""
+    """Print where compiled code is saved, if verbose, and that it is lost at the end, if it is."""
     if talk.is_verbose():
         talk.say(tr("compiled code: {folder}", folder=FOLDER))
     if (note := note_on_cache()) is not None and not is_complete():
@@ -103,14 +103,14 @@ def tell_of_cache() -> None:
 
 
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
-    """The whole way; loops that were never compiled before are made ready first."""
+    """Run all steps; loops that were never compiled before are compiled first."""
     tell_of_cache()
     compile_ahead(progress)
     return run(folder, out, chosen, progress, beside)
 
 
 def show_run(result: RunResult, *, as_json: bool) -> None:
-    """Say what a whole run measured."""
+    """Print the results of a whole run."""
     gauge, verdict = result.gauge, result.results.verdict
     rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
     for of, facts in ((label("camera"), camera_facts(result.camera)), (label("planes"), planes_facts(result.fan))):
@@ -128,7 +128,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
 
 
 def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Camera step."""
+    """Run the camera step."""
     with alone_with(folder, out) as work:
         calibration = camera_step(work, chosen.for_camera, progress)
         facts = (*camera_facts(calibration), *parameter_facts(calibration))
@@ -138,7 +138,7 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 
 
 def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Planes step."""
+    """Run the planes step."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         calibration = planes_step(work, chosen.for_planes, progress)
         rows = output.fact_rows(planes_facts(calibration))
@@ -150,7 +150,7 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 def run_check(
     folder: Path, out: Path, chosen: Options, progress: Progress, celsius: float | None = None
 ) -> tuple[InterimCheck, Shown]:
-    """Check step; `celsius` is the temperature of the air."""
+    """Run the check step; `celsius` is the temperature of the air."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         check = check_step(work, chosen.plane_stripe, progress, celsius)
         return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
@@ -180,7 +180,7 @@ def run_artefact(
 
 
 def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
-    """The checks so far of the rig of the set in `folder`, with the calibrations in `out`."""
+    """Read the checks so far of the rig of the set in `folder`, with the calibrations in `out`."""
     calibration = read_calibration(out)
     history = history_of(read_rig(folder / RIG), calibration.id)
     values = {
@@ -192,7 +192,7 @@ def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
 
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Scan step."""
+    """Run the scan step."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         measured = scan_step(work, chosen.for_scan, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
@@ -203,7 +203,7 @@ def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Sh
 
 
 def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Shown]:
-    """Gauge step; the verdict is that on the part."""
+    """Run the gauge step; the verdict is that on the part."""
     with alone_with(folder, out) as work:
         gauge, verdict = gauge_step(work, progress), read_results(work.out).verdict
         rows, values = output.gauge_rows(gauge, verdict), output.gauge_json(gauge, verdict)
@@ -213,7 +213,7 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Sho
 def run_profile(
     folder: Path, out: Path, chosen: Options, stage: str, tilt_sd_deg: float, progress: Progress
 ) -> tuple[Verdict, Shown]:
-    """Profile step; the verdict is that on the part."""
+    """Run the profile step; the verdict is that on the part."""
     if not 0 <= tilt_sd_deg < 10:
         raise InputError(
             Message("profile.tilt_sd_range", "{given:g}° is not between 0 and 10", given=tilt_sd_deg),
@@ -231,7 +231,7 @@ def run_profile(
 
 @contextmanager
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
-    """A recording set, lasers looked at in this channel, and the folder of its results, locked."""
+    """Open and lock a recording set, with this channel for the laser, and the folder of its results."""
     work = Workspace.open(open_set(folder).seen_in(channel), out, part)
     tell_of_cache()
     with alone_in(work.out):
@@ -266,7 +266,7 @@ def measure_aloud(
     stop: Path,
     progress: Progress = silent,
 ) -> SetResult:
-    """Measure one set as `measure_set`, in whatever process, and tell each of its stages; `name` is the language's."""
+    """Measure one set as `measure_set`, in any process, and print each of its stages; `name` is the language's."""
     speak_as(name, loudness)
     with lines_of(folder.name) as tell:
 
@@ -278,7 +278,7 @@ def measure_aloud(
 
 
 def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
-    """The worst of the sets' own.
+    """Return the worst of the sets' exit codes.
 
     70 where the program was at fault, 2 where one could not be measured, 3 where one has no thickness, 1 where one is
     not proven to conform, else 0.
@@ -292,7 +292,7 @@ def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
 
 
 def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
-    """Say what became of each set."""
+    """Print the result of each set."""
     if as_json:
         output.print_json({"sets": [_set_values(result) for result in results]})
         return

@@ -14,7 +14,7 @@ from core.messages import Message, label
 
 
 class ExitCode(IntEnum):
-    """What the program leaves with."""
+    """Exit codes of the program."""
 
     DONE = 0
     NOT_PROVEN = 1
@@ -35,7 +35,7 @@ EPILOG = label(
 
 
 class Panel:
-    """What commands are for: their headings in `trisect --help`, in the order of their first commands."""
+    """Headings of the commands in `trisect --help`, in the order of their first commands."""
 
     MEASURE = label("Measure a part")
     CALIBRATE = label("Calibrate and check the rig")
@@ -46,14 +46,14 @@ class Panel:
 
 
 class WhichTarget(str, Enum):  # noqa: UP042
-    """One of a rig's two targets."""
+    """Target of a rig: the camera's or the planes'."""
 
     camera = "camera"
     plane = "plane"
 
 
 class RecordedPart(str, Enum):  # noqa: UP042
-    """A part of a recording set, as its folder is called."""
+    """Part of a recording set, named as its folder."""
 
     camera = "camera"
     planes = "planes"
@@ -62,7 +62,7 @@ class RecordedPart(str, Enum):  # noqa: UP042
 
 
 class OrderBy(str, Enum):  # noqa: UP042
-    """What puts imported pictures in a row."""
+    """Order of imported pictures."""
 
     name = "name"
     time = "time"
@@ -88,7 +88,7 @@ Profile = Annotated[
 
 
 def one_of(chosen: str, known: Sequence[str], where: str) -> str:
-    """One of `known`, in any case of letters; nothing stays nothing."""
+    """Find `chosen` among `known`, in any case of letters; "" stays ""."""
     by_lower = {one.lower(): one for one in known}
     if chosen and chosen.lower() not in by_lower:
         raise InputError(

@@ -47,17 +47,17 @@ PIPE_WIDTH = 1000
 
 
 def notes_json(notes: Sequence[Message]) -> list[dict[str, Any]]:
-    """Notes as ``--json`` has them and result files keep them: code, English text and values."""
+    """Convert notes for ``--json`` and result files: code, English text and values."""
     return [as_json(note) for note in notes]
 
 
 def print_json(values: Mapping[str, Any]) -> None:
-    """One JSON object on standard output."""
+    """Print one JSON object on standard output."""
     sys.stdout.write(to_json(values))
 
 
 def console() -> Console:
-    """Standard output, as wide as a screen or, in a pipe, as its lines."""
+    """Return the console of standard output, as wide as a screen or, in a pipe, as its lines."""
     out = Console(highlight=False, markup=False, emoji=False)
     if not out.is_terminal:
         out.width = PIPE_WIDTH
@@ -65,7 +65,7 @@ def console() -> Console:
 
 
 def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Path] | None = None) -> None:
-    """A table of labels and values, the notes below it, then where the files are."""
+    """Print a table of labels and values, the notes below it, and then where the files are."""
     out = console()
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_column(style="dim", no_wrap=True)
@@ -83,14 +83,14 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
 
 
 def fact_rows(facts: Iterable[Fact], tables: Iterable[FactTable] = (), reader: Reader = Reader.AUDITOR) -> Rows:
-    """What a reader is told of a result; with ``--verbose`` all that there is."""
+    """Make the rows of the facts of a result for a reader; with ``--verbose`` of all of them."""
     reader = Reader.METROLOGIST if is_verbose() else reader
     rows = [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
     return rows + [line for table in tables_for_reader(tables, reader) for line in table.lines(words())]
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
-    """On standard error: processor time and share of each stage, and how long all of it took."""
+    """Print on standard error processor time and share of each stage, and the whole duration."""
     table = Table(tr("stage"), box=None, padding=(0, 2, 0, 0))
     for title in (tr("processor s"), tr("share")):
         table.add_column(title, justify="right")
@@ -103,27 +103,29 @@ def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
 
 
 def words() -> Words:
-    """Numbers, and what core.report says, in the language that was chosen."""
+    """Return the words and numbers of core.report in the chosen language."""
     return Words(spoken())
 
 
 def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
-    """Thickness, deviation and faces, and the verdict on the part."""
+    """Make the rows of thickness, deviation and faces, and of the verdict on the part."""
     return fact_rows((*gauge_facts(gauge), verdict_fact(verdict)))
 
 
 def check_rows(check: InterimCheck) -> Rows:
-    """What came of a check, how far off the stripes are, and what that does to a step of the part's height."""
+    """Make the rows of a check: its result, how far off the stripes are, and the error of a step of the part's
+    height.
+    """
     return [(tr(VERDICT), told(check.sentence)), *fact_rows(check_facts(check)), *left_out_rows(check.poses)]
 
 
 def left_out_rows(pictures: Iterable[Picture]) -> Rows:
-    """Why pictures were left out, one line a reason."""
+    """Make the rows of why pictures were left out, one line a reason."""
     return [("", told(one.line())) for one in left_out(pictures)]
 
 
 def check_json(check: InterimCheck) -> dict[str, Any]:
-    """The same for programs; check.json has it stripe by stripe."""
+    """Convert a check for programs; check.json has it stripe by stripe."""
     return {
         "passed": check.passed,
         "p": check.p,
@@ -136,7 +138,7 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
 
 
 def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
-    """The same for programs; planes.json has it in full."""
+    """Convert a re-adjustment for programs; planes.json has it in full."""
     record = done.record
     return {
         "of": record.of,
@@ -155,7 +157,7 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
 
 
 def artefact_rows(check: ArtefactCheck) -> Rows:
-    """What was measured of an artefact, and how that agrees with its certificate."""
+    """Make the rows of a measured artefact, and how it agrees with its certificate."""
     compared = check.characteristic or tr(KINDS[check.artefact.kind])
     return [
         (tr("compared"), compared),
@@ -165,7 +167,7 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
 
 
 def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
-    """The same for programs."""
+    """Convert the check of an artefact for programs."""
     return {
         "artefact": check.artefact.id,
         "kind": check.artefact.kind,
@@ -181,19 +183,19 @@ def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
 
 
 def history_rows(history: RigHistory) -> Rows:
-    """Each check of a rig: when, what came of it, by how much a step was off, and within which limits."""
+    """Make the rows of the checks of a rig: when, the result, by how much a step was off, and within which limits."""
     charted = ((one, history.chart(one)) for one in history.checks)
     return fact_rows((history_fact(history.name, len(history.checks)),), (history_table(charted),))
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
-    """The same for programs."""
+    """Convert a past check with its limits for programs."""
     limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
     return {**check.values, "limits": limits}
 
 
 def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
-    """The same for machines."""
+    """Convert the steps of pictures for programs."""
     return {
         "pictures": [
             {"name": one.name, "thickness_mm": one.thickness_mm, "own_mm": one.own_mm, **reason_json(one.reason)}
@@ -203,13 +205,16 @@ def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
 
 
 def reason_json(reason: Message | None, name: str = "reason") -> dict[str, Any]:
-    """Why something was left out or failed: the English text by `name`, code and values beside it; empty for None."""
+    """Convert the reason why something was left out or failed: the English text by `name`, code and values.
+
+    Empty for None.
+    """
     told = as_json(reason or plain(""))
     return {name: told["text"], "code": told["code"], "values": told["values"]}
 
 
 def gauge_json(gauge: GaugeResult | None, verdict: Verdict) -> dict[str, Any]:
-    """The thickness and the verdict on the part, for machines; nulls where no thickness was measured."""
+    """Convert the thickness and the verdict on the part for programs; nulls where no thickness was measured."""
     if gauge is None:
         return {"thickness_mm": None, "verdict": verdict}
     return {
@@ -220,7 +225,7 @@ def gauge_json(gauge: GaugeResult | None, verdict: Verdict) -> dict[str, Any]:
 
 
 def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
-    """Frames used and left out, and points, for machines."""
+    """Convert frames used and left out, and points, for programs."""
     return {
         "points": points,
         "frames_used": sum(frame.used for frame in frames),
@@ -231,7 +236,7 @@ def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
 
 
 def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
-    """The camera for machines."""
+    """Convert the camera for programs."""
     return {
         "rms_px": calibration.rms_px,
         "mean_px": calibration.mean_px,
@@ -245,7 +250,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
 
 
 def planes_json(calibration: FanCalibration) -> dict[str, Any]:
-    """The fan for machines."""
+    """Convert the fan for programs."""
     return {
         "pi": calibration.fan.pis,
         "rms_mm": calibration.rms_mm,
@@ -260,5 +265,5 @@ def planes_json(calibration: FanCalibration) -> dict[str, Any]:
 
 
 def files_json(files: Mapping[str, Path]) -> dict[str, str]:
-    """Paths as text."""
+    """Convert paths to text."""
     return {name: str(path) for name, path in files.items()}

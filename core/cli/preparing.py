@@ -30,7 +30,7 @@ def target_of_words(
     *,
     asymmetric: bool,
 ) -> Target:
-    """The target of these words; what is None is USUAL."""
+    """Make the target of these words; None means the default of USUAL."""
     if kind not in USUAL:
         raise InputError(
             Message("target.no_kind", "{kind!r} is no kind of target", kind=kind),
@@ -55,7 +55,7 @@ def target_of_words(
 
 
 def target_of_rig(path: Path, which: str) -> Target:
-    """The camera's or the planes' target of rig.toml, or of the recording set that holds it."""
+    """Read the camera's or the planes' target of rig.toml, or of the recording set that holds it."""
     file = path / "rig.toml" if path.is_dir() else path
     rig = read_rig(file)
     require_tables(rig, file, "camera_target" if which == "camera" else "plane_target")
@@ -63,7 +63,7 @@ def target_of_rig(path: Path, which: str) -> Target:
 
 
 def one_choice(kind: str, rig: Path | None) -> None:
-    """InputError unless exactly one of both says what to print."""
+    """Raise InputError unless exactly one of both states what to print."""
     if bool(kind) == (rig is not None):
         what = (
             Message("target.kind_and_rig", "both a kind of target and a rig are given")
@@ -83,7 +83,7 @@ def write_sheet(target: Target, paper: str, title: str, out: Path) -> None:
 
 
 def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
-    """Say what was written, and what to do at the printer."""
+    """Print what was written, and what to do at the printer."""
     name = _paper(paper)
     layout = sheet_layout(target, name)
     sheet = tr("{paper}, {width:g} × {height:g} mm", paper=name, width=layout.width_mm, height=layout.height_mm)
@@ -110,7 +110,7 @@ def write_card(paper: str, out: Path) -> None:
 
 
 def show_card(out: Path, *, as_json: bool) -> None:
-    """Say where it is."""
+    """Print where the card is."""
     if as_json:
         output.print_json({"file": str(out)})
     else:

@@ -59,7 +59,7 @@ _TARGETS = {"camera": ("camera_target",), "planes": ("plane_target",), "check": 
 def request(
     folder: Path, step: Step, choice: SourceChoice, calibrations: Path | None, settings: SourceSettings, ending: Ending
 ) -> LiveRequest:
-    """What to record into SET/STEP, with the calibrations in a folder of results where one is given.
+    """Make the request to record into SET/STEP, with the calibrations in a folder of results if one is given.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def request(
 
 
 class Recording:
-    """One recording on a terminal: what is told, what a person is asked for, and when it ends.
+    """Recording on a terminal: its messages, its questions to the user, and its end.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ class Recording:
 
 
 def show(ended: LiveEnded, *, as_json: bool) -> None:
-    """Say what was recorded.
+    """Print what was recorded.
 
     Raises
     ------
@@ -235,7 +235,7 @@ def show(ended: LiveEnded, *, as_json: bool) -> None:
 
 
 def show_sources(*, as_json: bool) -> None:
-    """List what can be recorded from, and for kinds that cannot be used what to install."""
+    """List the sources to record from, and for kinds that cannot be used what to install."""
     rows: list[tuple[str, Message | str, str]] = []
     for name, source in SOURCES.items():
         rows.append((name, missing_driver(name) or source.title, ""))

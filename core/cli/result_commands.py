@@ -15,7 +15,7 @@ commands = typer.Typer()
 
 
 class FrameChoice(StrEnum):
-    """The frame that geometry is handed over in."""
+    """Frame in which geometry is exported."""
 
     PART = "part"
     CAMERA = "camera"

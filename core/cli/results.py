@@ -44,7 +44,7 @@ from core.states import VERDICT
 
 
 def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
-    """Inspect; nominal surfaces lie beside the plan."""
+    """Inspect a scan; nominal surfaces are beside the plan."""
     asked, folder = read_plan(plan), out or source
     if out is not None:
         make_folder(out)
@@ -54,7 +54,7 @@ def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) 
 
 
 def inspection_exit_code(inspection: Inspection, written: Path | None) -> ExitCode:
-    """Of the verdict on the part, or "not proven" where something could not be measured."""
+    """Return the exit code of the verdict on the part, or "not proven" where something could not be measured."""
     return ExitCode.NOT_PROVEN if inspection.problems else exit_code(_verdict_on_part(inspection, written))
 
 
@@ -64,7 +64,7 @@ def _verdict_on_part(inspection: Inspection, written: Path | None) -> Verdict:
 
 
 def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bool) -> None:
-    """Print it, for people or for machines."""
+    """Print the inspection, for people or for machines."""
     files = {} if written is None else {"inspection": written}
     if as_json:
         values = inspection_values(inspection) | {"verdict": _verdict_on_part(inspection, written)}
@@ -90,7 +90,7 @@ def run_compare(
     to: Path | None,
     progress: Progress,
 ) -> Shown:
-    """Compare, write, and return what to say; asked: diameter (0: chosen), reach and registration (None: found)."""
+    """Compare and write; asked: diameter (0: chosen), reach and registration (None: found)."""
     diameter, reach, registration = asked
     for name, value, least in (
         ("--diameter", diameter, 0.0),
@@ -117,7 +117,7 @@ def run_mesh(
     *,
     in_camera_frame: bool,
 ) -> Shown:
-    """Prepare, write, and return what to say; formats may be joined by commas."""
+    """Prepare the mesh and write it; formats may be joined by commas."""
     names = [name.strip() for one in formats for name in one.split(",") if name.strip()]
     made, written = mesh_step(results, names, options, to or results, progress, in_camera_frame=in_camera_frame)
     filled = int(made.mesh.filled.sum())
@@ -148,7 +148,7 @@ def run_mesh(
 
 @dataclass(frozen=True, slots=True)
 class ReportOptions:
-    """What the command line says of a report; nothing: as the template has it, or as usual."""
+    """Options of a report on the command line; "": as the template has it, or the default."""
 
     part: str = ""
     template: Path | None = None
@@ -161,7 +161,7 @@ class ReportOptions:
     studies: Sequence[Path] = ()
 
     def said(self, content: ReportContent) -> ReportContent:
-        """The content with all of it. InputError if a choice is not one, or the template cannot be read."""
+        """Apply these options to the content. InputError if a choice is not one, or the template cannot be read."""
         language, paper = (
             one_of(self.language, LANGUAGES, "--language"),
             one_of(self.paper, PAPERS, "--paper"),
@@ -182,7 +182,7 @@ class ReportOptions:
 
 
 def run_report(folder: Path, out: Path, chosen: ReportOptions, progress: Progress) -> Shown:
-    """Report step."""
+    """Run the report step."""
     with alone_with(folder, out, chosen.part) as work:
         report_step(work, progress, chosen.said)
         notes = tuple(work.record().notes.get("report", ()))
@@ -198,7 +198,10 @@ def run_export(
     *,
     in_camera_frame: bool,
 ) -> Shown:
-    """Results in the formats of others; InputError if there is no such format, or nothing to write from."""
+    """Write results in the formats of other programs.
+
+    InputError if there is no such format, or nothing to write from.
+    """
     kinds = [name.strip() for names in formats for name in names.split(",") if name.strip()]
     if not kinds:
         raise InputError(
@@ -211,7 +214,7 @@ def run_export(
 
 
 def run_import(file: Path, out: Path) -> Shown:
-    """A camera of another program as camera.json."""
+    """Write a camera of another program as camera.json."""
     calibration = import_camera(file, out)
     camera = calibration.camera
     rows = [

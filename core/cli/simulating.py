@@ -176,7 +176,7 @@ def simulate(
 
 
 def as_typed(path: Path) -> str:
-    """A path as it is typed on this computer's command line: quoted where that is needed."""
+    """Quote a path for this computer's command line where that is needed."""
     return subprocess.list2cmdline([str(path)]) if sys.platform == "win32" else shlex.quote(str(path))
 
 

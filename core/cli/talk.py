@@ -10,7 +10,7 @@ from core.messages import visible
 
 
 class Loudness(IntEnum):
-    """How much is said."""
+    """Amount of output: quiet, normal or verbose."""
 
     QUIET = 0
     USUAL = 1
@@ -21,34 +21,34 @@ _loudness = Loudness.USUAL
 
 
 def choose(wanted: Loudness) -> None:
-    """Say so much from now on."""
+    """Set the loudness from now on."""
     global _loudness
     _loudness = wanted
 
 
 def loudness() -> Loudness:
-    """How much is said."""
+    """Return the loudness."""
     return _loudness
 
 
 def is_quiet() -> bool:
-    """Whether nothing but errors is said."""
+    """Whether only errors are printed."""
     return _loudness is Loudness.QUIET
 
 
 def is_verbose() -> bool:
-    """Whether more than usual is said."""
+    """Whether more than usual is printed."""
     return _loudness is Loudness.VERBOSE
 
 
 def say(line: str) -> None:
-    """Say a line, unless the command is to be quiet."""
+    """Print a line, unless the command is quiet."""
     if not is_quiet():
         say_aloud(line)
 
 
 def say_aloud(line: str) -> None:
-    """Say a line whatever was asked for: errors, and what a person has to answer."""
+    """Print a line even if the command is quiet: errors, and questions to the user."""
     with suppress(OSError):  # a terminal that was closed hears nothing
         sys.stderr.write(f"{visible(line)}\n")
         sys.stderr.flush()

@@ -22,17 +22,17 @@ NoArgsIsHelpError: type[Exception] = _ERRORS.NoArgsIsHelpError
 
 
 class Commands(TyperGroup):
-    """A group of commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
+    """Group of commands; Ctrl-C passes through as `Cancelled`, or Typer would exit with the code of "not proven"."""
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
-        """Run the command that was asked for (called by Typer)."""
+        """Run the command that was typed (called by Typer)."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
             raise Cancelled from interrupt
 
     def resolve_command(self, ctx: typer.Context, args: list[str]) -> Any:  # type: ignore[override]
-        """Find the command that was asked for (called by Typer); InputError if there is none of that name."""
+        """Find the command that was typed (called by Typer); InputError if there is none of that name."""
         if args[0] not in self.commands:
             what = Message("cli.no_such_command", 'there is no command "{command}"', command=args[0])
             raise InputError(what, todo=_see_help(ctx, difflib.get_close_matches(args[0], self.commands)))
@@ -40,7 +40,7 @@ class Commands(TyperGroup):
 
 
 def usage_error(error: Any, words: Sequence[str]) -> InputError:
-    """An error of Typer's as one of our own.
+    """Convert an error of Typer's to one of our own.
 
     Parameters
     ----------
