@@ -68,13 +68,14 @@ test: $(READY)            ## format, lint, types, rooms, examples, every test; w
 offscreen: compile
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(if $(VIRTUAL_SCREEN),$(SCREEN_ONLY:%=--ignore=%))
 
-# What is checked without tests: each of it keeps one core busy, so it fills the time in which tests wait.
+# What is checked without tests: each of it keeps one core busy, so it fills the time in which tests wait. They have to
+# be in time in what they do by the clock, so they come first.
 beside: compile
-	@{ $(MAKE) --no-print-directory check && $(MAKE) --no-print-directory examples; } $(IN_ONE_PIECE)
+	@{ nice $(MAKE) --no-print-directory check && nice $(MAKE) --no-print-directory examples; } $(IN_ONE_PIECE)
 
 # Files of tests; pytest would take no file for all.
 BELOW_WORKBENCH = --ignore=tests/workbench
-below_workbench: compile   ## every test but those of windows: what another Python than that of `make test` has to pass
+below_workbench: compile  ## every test but those of windows: what another Python than that of `make test` has to pass
 	@# 5: there are only proofs in these files
 	$(if $(strip $(BELOW_WORKBENCH)),QT_QPA_PLATFORM=offscreen $(BIN)/pytest -p tests.time_left $(SIDE_BY_SIDE) $(BELOW_WORKBENCH) || [ $$? -eq 5 ])
 

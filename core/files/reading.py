@@ -68,7 +68,7 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         raise InputError(missing, where=path, todo=todo or "") from error
     except UnicodeDecodeError as error:
         raise InputError(
-            Message("file.no_text", "this is no UTF-8 text: byte {number} is part of no letter", number=error.start + 1),
+            Message("file.no_text", "this is no UTF-8 text: byte {number} is in no letter", number=error.start + 1),
             where=path,
             todo=Message("advice.save_utf8", "save it as UTF-8 in an editor"),
         ) from error

@@ -361,7 +361,7 @@ def test_light_planes_accepted_in_a_project_from_before_they_had_the_name_of_the
     (b'{"schema_version": 1, "info": {', "no valid JSON"),
     (b"[1, 2]", "this is no project"),
     (b"{}", "this is no project"),
-    (b'"\xff"', "this is no UTF-8 text: byte 2 is part of no letter"),
+    (b'"\xff"', "this is no UTF-8 text: byte 2 is in no letter"),
 ])  # fmt: skip
 def test_a_damaged_project_says_so(tmp_path, data, said):
     (tmp_path / "project.json").write_bytes(data)

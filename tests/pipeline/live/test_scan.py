@@ -68,7 +68,7 @@ def stage():
 
 @pytest.fixture(autouse=True)
 def no_features(monkeypatch):
-    """Every recording is too short for its features to be kept beside it: tests/pipeline/live/test_recorded_features.py."""
+    """No features are kept beside these recordings; that is tests/pipeline/live/test_recorded_features.py."""
     monkeypatch.setattr(recorded_features, "LOOK_AHEAD", 10**9)
 
 
