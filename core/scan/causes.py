@@ -5,13 +5,14 @@ Each cause moves the misclosures of the crossings in a way of its own, B c with 
 - something *moved* between two frames: main plane and the rest, each with a shift and a turn (`core.scan.standstill`);
 - the rig *drifted*: the picture shifted and its scale changed evenly from the reference to the last frame;
 - the *rig changed* since its calibration: fan turned and shifted, picture shifted, focal length (`core.calibrate`);
-- the fan's *lines bend*, in the form that their calibration has seen;
+- the fan's *lines bend*, each in the form that its calibration has seen;
 - the *hand moved* while rows were read out: every sheet shifts and turns evenly over the rows;
 - *second bounces*: every crossing of their light is off by itself.
 
 The fan's light tells of movement and drift, too: of each of its stretches how far it lies aside in every frame
 (`core.scan.fan_watch`), which jumps in a number of its own, or grows with time. Both measures are squares in variances
-of their noise, and add up.
+of their noise, and add up. Where the light is watched and surely at rest, nothing moved, whatever crossings would gain
+by it: sweeps that all disagree with a fan whose lines bend are as if the surface had moved before the first of them.
 
 With the network's unknowns eliminated, as in `core.scan.scan_evidence`, a cause takes E = gᵀ N⁻¹ g off the misfit, and
 T = gᵀ Σ⁻¹ g is χ² distributed if it does nothing, with Σ the covariance of g by the crossings' whole noise and by what
@@ -48,7 +49,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import Schedule
 from core.scan.between_frames import Between, between
-from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts
+from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts, light_at_rest
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import BY_CHANCE, Cause, Causes, Suspect
@@ -148,8 +149,10 @@ def compare_causes(
     if has_collapsed(equations, solution.pis):
         return ()
     seen, shifts, noise_px = fan_shifts(features)
+    noise_px = np.maximum(noise_px, LEAST_NOISE_PX)
+    movements = [one for one in scan.movements if not light_at_rest(seen, shifts, noise_px, one.first_after)]
     candidates = [
-        *_moved(equations, solution, scan.movements, frames, seen),
+        *_moved(equations, solution, movements, frames, seen),
         _drifted(equations, solution, frames, len(features.frames), seen),
         *_rig(equations, solution, of_rig, camera),
         *_bent(equations, solution, fan),
@@ -158,7 +161,7 @@ def compare_causes(
     ]
     unsure = [_of_deviation(equations, solution, one, camera) for one in of_calibration]
     normal = _normal(equations, solution, candidates, np.array(unsure).reshape(-1, len(table)).T)
-    found = choose(_with_light(normal, candidates, shifts, np.maximum(noise_px, LEAST_NOISE_PX)))
+    found = choose(_with_light(normal, candidates, shifts, noise_px))
     return _with_single_change(found, scan.rig_explained)
 
 
@@ -314,9 +317,12 @@ def _of_deviation(equations: Adjustment, solution: Solution, one: Deviation, cam
 
 
 def _bent(equations: Adjustment, solution: Solution, fan: Fan) -> Iterator[_Candidate]:
-    """The fan's lines bend in the form that their calibration has seen, more or less."""
-    if fan.bends is not None:
-        yield _Candidate(Suspect.BENT_LINES, change_of_misclosures(equations, solution, fan)[:, None])
+    """Each of the fan's lines bends in the form that its calibration has seen, more or less."""
+    if fan.bends is None:
+        return
+    lines = np.eye(len(fan.bends))[:, :, None, None] * fan.bends
+    moves = [change_of_misclosures(equations, solution, replace(fan, bends=one)) for one in lines]
+    yield _Candidate(Suspect.BENT_LINES, np.array(moves).T)
 
 
 def _hand(equations: Adjustment, read_out: ReadOut) -> Iterator[_Candidate]:

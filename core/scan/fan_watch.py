@@ -170,6 +170,18 @@ def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
     return known, shifts, np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
 
 
+def light_at_rest(seen: Index, shifts: Array, noise_px: Array, first_after: int) -> bool:
+    """Whether the fan's light surely lies where it lay before a frame: nothing that it lights moved there.
+
+    `seen` (K,), `shifts` (K, C) and `noise_px` (C,) are as of `fan_shifts`.
+    """
+    before, after = shifts[seen < first_after], shifts[seen >= first_after]
+    fewer = min(len(before), len(after))
+    if fewer < LEAST_FRAMES or shifts.shape[1] < LEAST_STRETCHES:
+        return False
+    return not _moved(np.median(before, axis=0), np.median(after, axis=0), noise_px, fewer)
+
+
 def _splits(shifts: Array, noise: Array, first: int) -> list[int]:
     """Where the frames from `first` on split into parts whose light lies elsewhere."""
     count = len(shifts)

@@ -55,6 +55,19 @@ def test_a_part_that_moved_is_the_first_cause_and_says_when():
     assert str(note).startswith("Most likely cause: something moved between frame29 and frame30 (explains ")
 
 
+@pytest.mark.parametrize("jump_px", [0.0, 0.3])
+def test_where_the_fans_light_is_at_rest_nothing_moved(jump_px):
+    """Crossings gain by a movement also where all sweeps disagree with a fan whose lines bend."""
+    mask, rng = ExactScan.of(Scenario(object="mask", scale=0.35), moved=(30, (0.3, 0.0, 0.0))), np.random.default_rng(1)
+    features, camera, fan = mask.measured(1), mask.rig.camera, mask.rig.fan
+    solved = reconstruct(features, camera, fan)
+    frames = tuple(
+        replace(one, fan_shifts_px=rng.normal(jump_px * (one.index >= 30), 0.005, 12)) for one in features.frames
+    )
+    causes = compare_causes(replace(features, frames=frames), solved, camera, fan, (), rig_changes(camera, fan))
+    assert solved.movements and (Suspect.MOVED in {one.suspect for one in causes}) == bool(jump_px)
+
+
 @pytest.mark.parametrize(
     ("changes", "suspect"),
     [
