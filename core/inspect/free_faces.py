@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from operator import attrgetter
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,19 +26,30 @@ from core.threads import ordered_map
 
 
 def free_faces(
-    cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, errors: PointErrors, progress: Progress = silent
+    cloud: Cloud,
+    pair: FacePair,
+    joint: Callable[[], ParallelPlaneFit],
+    errors: PointErrors,
+    progress: Progress = silent,
+    *,
+    tilt_determined: bool,
 ) -> tuple[Face, Face]:
     """The upper and the lower face of a `pair` in a cloud, each fitted freely.
 
-    Points that do not span a face leave open how it lies: it is that of the joint fit `planes` then, without flatness.
-    Both are fitted at once; a StageTimes learns what that costs.
+    Points that do not span a face leave open how it lies: it is that of the `joint` fit then, without flatness, which
+    is asked for only then, or where it is not `tilt_determined`. Both are fitted at once; a StageTimes learns what that
+    costs.
     """
 
-    def face(job: tuple[NDArray[np.int64], float]) -> Face:
+    def face(job: tuple[NDArray[np.int64], Callable[[ParallelPlaneFit], float]]) -> Face:
+        indices, distance = job
         with stage(progress, "faces"):
-            return _face(cloud, job[0], planes, job[1], errors)
+            reference = None if tilt_determined else joint().normal
+            return _face(cloud, indices, errors, reference, lambda: (joint().normal, distance(joint())))
 
-    upper, lower = ordered_map(face, ((pair.upper, planes.upper_distance), (pair.lower, planes.lower_distance)))
+    upper, lower = ordered_map(
+        face, ((pair.upper, attrgetter("upper_distance")), (pair.lower, attrgetter("lower_distance")))
+    )
     return upper, lower
 
 
@@ -48,16 +62,25 @@ def angle_of(upper: Face, lower: Face) -> float | None:
 
 
 def _face(
-    cloud: Cloud, indices: NDArray[np.int64], planes: ParallelPlaneFit, distance: float, errors: PointErrors
+    cloud: Cloud,
+    indices: NDArray[np.int64],
+    errors: PointErrors,
+    reference: Array | None,
+    joint: Callable[[], tuple[Array, float]],
 ) -> Face:
-    """A face from its free fit: the points the fit kept, their residuals and the zone of its form."""
+    """A face from its free fit: the points the fit kept, their residuals and the zone of its form.
+
+    `reference` (3,) is the normal for a tilt that the points leave open; `joint` gives that normal, and the distance,
+    which the joint fit has.
+    """
     points, sigma = cloud.points[indices], cloud.sigma[indices]
-    fit = fit_plane(points, sigma, reference_normal=None if planes.tilt_determined else planes.normal)
+    fit = fit_plane(points, sigma, reference_normal=reference)
     kept = fit.weights > 0
     shape = _plane(fit.normal, fit.distance, points[kept])
     if not spanned(shape, points[kept], sigma[kept], np.zeros(int(kept.sum()), dtype=np.int64)):
-        residuals = distance - points @ planes.normal
-        plane = LightPlane.from_normal(planes.normal, distance)
+        normal, distance = joint()
+        residuals = distance - points @ normal
+        plane = LightPlane.from_normal(normal, distance)
         return Face(plane, indices, residuals, None, _rms(residuals), spanned=False)
     residuals = fit.residuals[kept]
     plane = LightPlane.from_normal(fit.normal, fit.distance)

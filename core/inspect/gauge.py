@@ -9,6 +9,7 @@ extrapolated by itself, and no mean height is taken.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +36,7 @@ from core.inspect.uncertainty.skewed_light import doubts_of_light
 from core.messages import Field, Message
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
+from core.stage_times import stage
 
 Polygons = tuple[ArrayLike, ArrayLike]
 
@@ -55,7 +57,7 @@ class GaugeFit:
     `faces` is the joint fit, over `pair.upper` and `pair.lower` (indices into the cloud); `robust` the same planes
     fitted as if points were independent; `upper` and `lower` are each fitted freely, `parallelism` (rad) is the angle
     between them, None where one of them is not spanned by its points. `budget` says what the uncertainty of the
-    thickness is made of.
+    thickness is made of, `notes` what is wrong with the form of the faces.
     """
 
     faces: FittedFaces
@@ -65,6 +67,7 @@ class GaugeFit:
     lower: Face
     parallelism: float | None
     budget: tuple[Contribution, ...]
+    notes: tuple[Message, ...]
 
     @property
     def planes(self) -> ParallelPlaneFit:
@@ -121,9 +124,24 @@ def fit_gauge(
             where=region_field("upper"),
             todo=Message("gauge.advice_exchange_faces", "exchange upper_polygon_px and lower_polygon_px"),
         )
-    faces = fit_faces(upper, lower, robust, errors)
-    free = free_faces(cloud, pair, faces.planes, errors, progress)
-    return GaugeFit(faces, robust, pair, *free, angle_of(*free), _budget(faces, errors))
+
+    def joint_fit() -> tuple[FittedFaces, tuple[Message, ...]]:
+        with stage(progress, "faces"):
+            faces = fit_faces(upper, lower, robust, errors)
+            return faces, _notes_on_form(cloud, pair, faces.planes, errors)
+
+    with ThreadPoolExecutor(1) as pool:  # beside the free fits, which hardly ever wait for it
+        joint = pool.submit(joint_fit)
+        free = free_faces(
+            cloud,
+            pair,
+            lambda: joint.result()[0].planes,
+            errors,
+            progress,
+            tilt_determined=robust.tilt_determined,
+        )
+        faces, notes = joint.result()
+    return GaugeFit(faces, robust, pair, *free, angle_of(*free), _budget(faces, errors), notes)
 
 
 def measure_gauge(
@@ -173,7 +191,7 @@ def measure_gauge(
         tolerance_mm=tolerance_mm,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=_notes_on_form(cloud, fit, errors),
+        notes=fit.notes,
         doubts=(),
         candidates=fit.pair.candidates,
     )
@@ -207,13 +225,12 @@ def _several(candidates: Sequence[PairCandidate]) -> Message:
     )
 
 
-def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Message, ...]:
+def _notes_on_form(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, errors: PointErrors) -> tuple[Message, ...]:
     """What is wrong with the form of the two faces; nothing is said of single lines on them."""
-    planes = fit.planes
     if not planes.tilt_determined:
         return ()
-    indices = np.concatenate([fit.pair.upper, fit.pair.lower])
-    part = np.repeat([0, 1], [len(fit.pair.upper), len(fit.pair.lower)])
+    indices = np.concatenate([pair.upper, pair.lower])
+    part = np.repeat([0, 1], [len(pair.upper), len(pair.lower)])
     shape = planes.shape(cloud.points[indices], part)
     return notes_on_form(cloud, indices, shape, errors, (UPPER_FACE, LOWER_FACE), part)
 

@@ -251,7 +251,10 @@ def measure_steps(
     budget = tuple(rows)
     u, factor = combined(budget), student_factor(k, budget)
     shown = steps[int(np.argmin(np.abs(values - thickness)))]
-    upper, lower = free_faces(shown.cloud, shown.pair, shown.faces.planes, shown.errors)
+    planes = shown.faces.planes
+    upper, lower = free_faces(
+        shown.cloud, shown.pair, lambda: planes, shown.errors, tilt_determined=planes.tilt_determined
+    )
     gauge = GaugeResult(
         thickness_mm=thickness,
         u_mm=u,

@@ -8,6 +8,7 @@ import pytest
 from core.errors import InputError
 from core.inspect.causes import Cause
 from core.inspect.faces import FacePair
+from core.inspect.free_faces import free_faces
 from core.inspect.gauge import RULE, fit_gauge, measure_gauge
 from core.inspect.uncertainty.coverage import coverage_factor, effective_dof
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -86,6 +87,22 @@ def test_points_that_share_errors_weigh_less_than_points_that_do_not(scan):
     independent = np.array([fit.robust.thickness for fit in fits])
     generalised = np.array([fit.thickness_mm for fit in fits])
     assert generalised.std() < 0.6 * independent.std()
+
+
+def test_faces_fitted_beside_each_other_are_those_fitted_alone(scan):
+    cloud, errors = scan.measure(np.random.default_rng(4), noise=0.02), scan.errors()
+    fit = fit_gauge(cloud, regions=faces(scan), errors=errors)
+    alone = free_faces(cloud, fit.pair, lambda: fit.planes, errors, tilt_determined=True)
+    for beside, face in zip((fit.upper, fit.lower), alone, strict=True):
+        assert np.array_equal(beside.plane.pi, face.plane.pi)
+        assert beside.flatness_mm == face.flatness_mm
+
+
+def test_a_joint_fit_that_fails_is_told(scan):
+    cloud, errors = scan.measure(np.random.default_rng(4), noise=0.02), scan.errors(plane_errors=True)
+    short = replace(errors, sweep_covariance=errors.sweep_covariance[:-3, :-3])
+    with pytest.raises(ValueError, match="the covariance holds 17 sweeps"):
+        fit_gauge(cloud, regions=faces(scan), errors=short)
 
 
 class SharedSpeckle:

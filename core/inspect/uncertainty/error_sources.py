@@ -167,11 +167,11 @@ class Sources:
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
         fan, swept = np.flatnonzero(self.of_fan), np.flatnonzero(~self.of_fan)
-        rows = self.effects(others)[fan] * np.sqrt(weight[fan])[:, None]
         weighted = weight[swept, None] * others[swept]
         planes = _triangles(self.on_planes[swept], weight[swept]) @ self.planes
         across = (self.on_planes[swept].T @ weighted).T @ self.planes
         of_swept = np.block([[weighted.T @ others[swept], across], [across.T, planes.T @ planes]])
+        rows = np.hstack([others[fan], self.speckle[fan], self.sweeps[fan]]) * np.sqrt(weight[fan])[:, None]
         return of_swept, rows.T @ rows
 
     def mean(self, values: Array) -> Array:
@@ -264,5 +264,6 @@ def _of_common(
     if errors.common is None:
         return np.zeros((count, 0))
     changes = errors.common.changes(cloud.uv, cloud.sweep)
-    columns = [mean((change * direction).sum(axis=1)) for change in changes]
+    along = np.broadcast_to(direction, cloud.points.shape)
+    columns = [mean(np.einsum("ni,ni->n", change, along)) for change in changes]
     return np.column_stack(columns) if columns else np.zeros((count, 0))

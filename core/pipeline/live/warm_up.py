@@ -22,16 +22,13 @@ from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 from core.pipeline.live.preview import ScanPreviewer
+from core.pipeline.steps.scan.surface import level_patch, make_surface
 from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingWindow
 from core.scan.features.extraction import extract_features, saturated_pixels
 from core.scan.features.reference import FeatureOptions, picture_difference
 from core.scan.network.normal_matrix import normal_matrix
 from core.scan.surface.bends import bends_of
-from core.scan.surface.cloud import Cloud
-from core.scan.surface.fusion import fuse
-from core.scan.surface.mesh import build_mesh
-from core.scan.surface.normals import with_normals
 
 PixelType = type[np.uint8] | type[np.uint16]
 
@@ -149,10 +146,5 @@ def _line(uv: Array) -> Centreline:
 
 def _surface() -> None:
     """A level patch of points, fused, with normals, bends and triangles."""
-    u, v = (axis.ravel().astype(np.float64) for axis in np.meshgrid(np.arange(40, 200, 2), np.arange(40, 160, 2)))
-    uv, count = np.column_stack([u, v]), u.size
-    points = 500.0 * np.column_stack([(u - 160) / 400, (v - 120) / 400, np.ones(count)])
-    level, none = np.full(count, 0.02), np.zeros(count, dtype=np.int64)
-    cloud = with_normals(Cloud(points, uv, level, level, none, none, np.zeros((count, 3))))
-    bends_of(cloud, SIZE)
-    build_mesh(with_normals(fuse(cloud, SIZE)))
+    cloud, image_size = level_patch()
+    bends_of(make_surface((cloud, image_size))[0], image_size)

@@ -12,6 +12,7 @@ from core.image.stripes.centreline import Centreline
 from core.pipeline.live.events import ScanDetail
 from core.pipeline.project.calibration import accepted_camera
 from core.pipeline.project.measuring import measure_scan
+from core.pipeline.steps.scan.surface import get_ready
 from core.pipeline.taken_over import MAKES_SURFACES
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview, cloud_of
@@ -33,6 +34,8 @@ def measure_watched(
     """
     watching = None if watch is None else WatchReporter(accepted_camera(folder, project).image_size, watch)
     with second_process(MAKES_SURFACES) as beside:  # it starts while the network is solved
+        if beside is not None:
+            beside.submit(get_ready, None)  # meanwhile, too
         return measure_scan(folder, project, progress, watching, beside=beside)
 
 

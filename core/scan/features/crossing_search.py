@@ -26,6 +26,7 @@ from core.model.arrays import Array
 from core.model.small_arrays import doubled_index_table, indices_of, new_index_table, new_indices
 from core.progress import Progress, silent
 from core.scan.features.crossings import CrossingTable, CrossingWindow, Index
+from core.threads import ordered_map
 
 _AT_ONCE = 500
 """So many meetings are fitted before it is told how far the search is: some 20 ms."""
@@ -161,11 +162,15 @@ class _Fits:
             np.zeros((count, 2, CELLS)),
         )
         pieces = _Pieces.of(lines)
-        for start in range(0, count, _AT_ONCE):
-            reached(int(met.picture[start, 0]) - 1)
+
+        def fit(start: int) -> int:
             part = slice(start, start + _AT_ONCE)
             into = _Into(fits.rows[part], fits.along[part], fits.cell[part], fits.share[part])
             _fit(met.piece[part], met.point[part], pieces, lines.cell_px, min_angle, into)
+            return start
+
+        for start in ordered_map(fit, range(0, count, _AT_ONCE)):
+            reached(int(met.picture[start, 0]) - 1)
         return fits
 
 

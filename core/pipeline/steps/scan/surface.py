@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -21,6 +23,19 @@ def begin_surface(
         return lambda: make_surface(scanned, progress=progress)
     made = beside.submit(make_surface, scanned, progress)
     return lambda: beside.wait(made, progress, "mesh")
+
+
+def get_ready(_: None, /, *, progress: Progress = silent) -> None:
+    """Load all that `make_surface` needs, which every process does anew."""
+    make_surface(level_patch(), progress=progress)
+
+
+def level_patch() -> tuple[Cloud, tuple[int, int]]:
+    """A few points as `make_surface` takes them: what has to be loaded for them is what any cloud needs."""
+    u, v = (axis.ravel().astype(np.float64) for axis in np.meshgrid(np.arange(40, 200, 2), np.arange(40, 160, 2)))
+    points = 500.0 * np.column_stack([(u - 160) / 400, (v - 120) / 400, np.ones(u.size)])
+    level, none = np.full(u.size, 0.02), np.zeros(u.size, dtype=np.int64)
+    return Cloud(points, np.column_stack([u, v]), level, level, none, none, np.zeros((u.size, 3))), (320, 240)
 
 
 def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progress = silent) -> tuple[Cloud, Mesh]:
