@@ -165,6 +165,19 @@ def compare_causes(
     return _with_single_change(found, scan.rig_explained)
 
 
+def causes_of_light(features: ScanFeatures, movements: Sequence[Between]) -> Causes:
+    """The same by the fan's light alone, where the sweeps cannot be located: it moved in `movements`, or drifts."""
+    seen, shifts, noise_px = fan_shifts(features)
+    when, none = (seen[:, None] + 1) / max(len(features.frames), 1), np.zeros((0, 0))
+    candidates = [
+        _Candidate(Suspect.MOVED, none, len(features.frames), _after(movements, seen)),
+        _Candidate(Suspect.DRIFTED, none, light=when),
+    ]
+    places = {one.suspect: one.places for one in candidates}
+    normal = Normal(none, np.zeros(0), none, (), places, 0.0, 0.0)
+    return choose(_with_light(normal, candidates, shifts, np.maximum(noise_px, LEAST_NOISE_PX)))
+
+
 def choose(normal: Normal) -> Causes:
     """Choose the cause that explains most beyond chance, and then of the others the one that explains most of the rest.
 
@@ -285,8 +298,12 @@ def _moved(
     for _, first_after in movements:
         k = np.searchsorted(frames, first_after)
         columns.append(np.where(((earlier < k) & (later >= k))[:, None], pattern, 0.0))
-    light = np.column_stack([seen >= first_after for _, first_after in movements]).astype(np.float64)
-    yield _Candidate(Suspect.MOVED, np.hstack(columns), len(frames), light)
+    yield _Candidate(Suspect.MOVED, np.hstack(columns), len(frames), _after(movements, seen))
+
+
+def _after(movements: Sequence[Between], seen: Index) -> Array:
+    """Which of the frames `seen` (F,) come after each of `movements` (F, L): 1 if so."""
+    return (seen[:, None] >= np.array([first_after for _, first_after in movements])).astype(np.float64)
 
 
 def _drifted(equations: Adjustment, solution: Solution, frames: Index, count: int, seen: Index) -> _Candidate:

@@ -118,12 +118,27 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
 def cause_first(reasons: Callable[[], Iterable[Reason]], causes: Sequence[Cause] = ()) -> Iterator[None]:
     """Put the first of the reasons that holds before the text of a complaint raised in this block.
 
-    `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared.
+    `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared. The
+    share of the one that is named is told.
     """
     try:
         yield
     except InputError as error:
         for reason in in_order(reasons(), causes):
             if reason.of_own or not isinstance(error, OwnCause):
-                raise reason.kind(reason.begun(error.what), where=error.where, todo=reason.todo) from error
+                what = reason.begun(_with_share(error.what, reason.suspect, causes))
+                raise reason.kind(what, where=error.where, todo=reason.todo) from error
         raise
+
+
+def _with_share(complaint: Message, suspect: Suspect, causes: Sequence[Cause]) -> Message:
+    """A complaint with the share that the cause named before it explains, where that is known."""
+    share = next((cause.share for cause in causes if cause.suspect == suspect), None)
+    if share is None:
+        return complaint
+    return Message(
+        "cause.share_of_first",
+        "{complaint} (what is named first explains {percent:.0f} % of what is too large)",
+        complaint=complaint,
+        percent=100 * share,
+    )

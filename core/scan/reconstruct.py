@@ -20,6 +20,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
 from core.scan.between_frames import Between, between, each_once
+from core.scan.causes import causes_of_light
 from core.scan.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
@@ -107,12 +108,13 @@ def reconstruct(
     watched = watch_fan(features, lines, camera, fan)
     _require_rest(features, watched)
     among, unrest = (crossings, line), partial(_unrest, watched, names)
+    shares = causes_of_light(features, watched.movements) if watched.unsteady else ()
     bounces = NO_BOUNCES
     if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
         bounces = find_second_bounces(features.frames, among, camera, fan)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
-    with cause_first(unrest):
+    with cause_first(unrest, shares):
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
         sweeps = solved.sweeps
         if sweeps.collapsed and not _flat(features, lines, camera, fan):
@@ -122,7 +124,7 @@ def reconstruct(
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
-    with cause_first(unrest):
+    with cause_first(unrest, shares):
         if not np.any(cloud.sweep >= 0):
             raise _refused(
                 too_bright,

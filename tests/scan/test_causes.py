@@ -1,6 +1,7 @@
 """Which cause explains most of what a scan's crossings are off too much: the true one, and alone."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ from core.findings.finding import Weight
 from core.findings.proof import ScanFacts
 from core.findings.table import FINDINGS
 from core.scan.between_frames import Between
-from core.scan.causes import Normal, choose, compare_causes, note_on_causes
+from core.scan.causes import Normal, causes_of_light, choose, compare_causes, note_on_causes
 from core.scan.fan_watch import FanRest
+from core.scan.features.frames import FrameFeatures
 from core.scan.first_cause import Cause, Suspect
 from core.scan.reconstruct import reconstruct
 from core.scan.standstill import StillPart
@@ -53,6 +55,29 @@ def test_a_part_that_moved_is_the_first_cause_and_says_when():
     )
     assert note.code == "scan.most_likely_cause"
     assert str(note).startswith("Most likely cause: something moved between frame29 and frame30 (explains ")
+
+
+def light_of(shift_px):
+    """Features of 30 frames whose light lies aside by so much in each, in 12 stretches of a noise of 0.005 px."""
+    rng = np.random.default_rng(1)
+    frames = [FrameFeatures(i, f"f{i}", (), fan_shifts_px=rng.normal(shift_px(i), 0.005, 12)) for i in range(30)]
+    return SimpleNamespace(frames=frames)
+
+
+@pytest.mark.parametrize(
+    ("shift_px", "movements", "suspects"),
+    [
+        (lambda i: 0.0, (Between(14, 15),), []),
+        (lambda i: 0.3 * (i >= 15), (Between(14, 15),), [Suspect.MOVED]),
+        (lambda i: 0.02 * i, (), [Suspect.DRIFTED]),
+        (lambda i: 0.3 * (i >= 15) + 0.01 * i, (Between(14, 15),), [Suspect.MOVED, Suspect.DRIFTED]),
+    ],
+)
+def test_the_fans_light_alone_says_what_share_a_movement_and_a_drift_have(shift_px, movements, suspects):
+    """Where no sweep can be located there are no crossings to compare."""
+    causes = causes_of_light(light_of(shift_px), movements)
+    assert [one.suspect for one in causes] == suspects
+    assert sum(one.share for one in causes) == pytest.approx(min(len(suspects), 1), abs=0.02)
 
 
 @pytest.mark.parametrize("jump_px", [0.0, 0.3])

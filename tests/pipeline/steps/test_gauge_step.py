@@ -97,7 +97,9 @@ def test_lines_that_are_no_planes_are_named_before_what_seems_to_have_moved(off_
 def test_what_moved_is_named_before_lines_that_bend_where_it_explains_most():
     bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True))
     most = [Cause(Suspect.MOVED, 0.8, 12, 1e-9), Cause(Suspect.BENT_LINES, 0.1, 1, 1e-4)]
-    assert told_first(scan, no_faces(), bends=bends, causes=most).code == "gauge.moved_and_no_faces"
+    refused = told_first(scan, no_faces(), bends=bends, causes=most)
+    assert refused.code == "gauge.moved_and_no_faces"
+    assert "(what is named first explains 80 % of what is too large)" in str(refused)
 
 
 def test_only_the_likeliest_cause_is_told_of_faces_that_are_not_found():
@@ -127,7 +129,9 @@ def test_lines_that_bend_are_named_before_unsure_points_though_they_explain_litt
     bends = np.diag([0, 0, 0.05 / 500**2])[None]
     little = [Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
     refused = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends, causes=little)
-    assert refused.code == "gauge.bent_and_no_faces"
+    assert refused.code == "gauge.bent_and_no_faces" and "explains 20 % of what is too large" in str(refused)
+    facts_alone = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends)
+    assert facts_alone.code == "gauge.bent_and_no_faces" and "explains" not in str(facts_alone)
 
 
 @pytest.mark.parametrize(("kept", "code"), [(10, "scan.pictures_at_fault"), (90, "gauge.too_few_faces")])
