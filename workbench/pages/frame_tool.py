@@ -12,7 +12,7 @@ from workbench.views.scene.view import SceneView
 
 
 class FrameTool(QObject):
-    """Shows a 3D view in the frame that is wanted, as far as the part's is known."""
+    """Tool that shows a 3D view in the chosen frame, if the part's own is known."""
 
     def __init__(self, scene: SceneView, settings: AppSettings) -> None:
         super().__init__(scene)
@@ -25,7 +25,7 @@ class FrameTool(QObject):
         self._refresh()
 
     def show(self, part: ViewFrame | None) -> None:
-        """What the part's own frame is now; None where it is not known."""
+        """Set the part's own frame; None where it is not known."""
         self._part = part
         self._refresh()
 

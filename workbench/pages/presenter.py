@@ -10,7 +10,7 @@ from workbench.step_state import StepState
 
 
 class StepPresenter(QObject):
-    """The decisions of one page.
+    """Presenter of one page: its actions and decisions.
 
     `step` is its name in `workbench.step_state.ORDER`. `changed` is emitted whenever the page must be drawn anew. A
     subclass overrides `blocker` and, as needed, `opened` (another project), `project_changed` (an edit, undo or redo),
@@ -32,39 +32,39 @@ class StepPresenter(QObject):
 
     @property
     def project(self) -> Project:
-        """The project in force."""
+        """Present project."""
         return self.model.project
 
     @property
     def state(self) -> StepState:
-        """How far this step is."""
+        """State of this step."""
         return self.model.states[self.step]
 
     def blocker(self) -> str:
-        """One sentence saying what is missing before Next makes sense, or ""."""
+        """Say in one sentence what is missing before Next makes sense, or ""."""
         return ""
 
     @property
     def waits_to_be_accepted(self) -> bool:
-        """Whether a calibration is there that could be accepted."""
+        """Whether there is a calibration that can be accepted."""
         return False
 
     @property
     def is_working(self) -> bool:
-        """Whether a calibration is on its way, or being kept."""
+        """Whether a calibration is being computed or stored."""
         return False
 
     def opened(self) -> None:
-        """Another project is open (or none): forget what belonged to the last one, load what this one has."""
+        """Forget the last project, and load what this page needs of the opened one (or none)."""
 
     def project_changed(self, before: Project, after: Project) -> None:
-        """The project was edited, or an edit undone."""
+        """Follow an edit of the project, or its undo."""
 
     def entered(self) -> None:
-        """The page is shown."""
+        """Follow that the page is shown."""
 
     def left(self) -> None:
-        """The page is hidden."""
+        """Follow that the page is hidden."""
 
     def _opened(self) -> None:
         self.opened()

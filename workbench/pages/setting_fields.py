@@ -13,7 +13,7 @@ from workbench.views.forms.form import SettingsForm
 
 
 def add_settings(form: SettingsForm, step: str) -> None:
-    """Add a field for each setting of a step that has a title; of those of a stripe, also whether it is found."""
+    """Add a field for each setting of a step that has a title; for those of a stripe, also whether it is found."""
     for row in settings_of(step):
         if isinstance(row.setting.kind, Values) and row.setting.title:
             form.add_check(AUTOMATIC, tr(row.setting.title), tr(row.setting.help))
@@ -29,7 +29,7 @@ def add_rig_settings(form: SettingsForm, table: str) -> None:
 
 
 def set_stripe_editable(form: SettingsForm, automatic: bool) -> None:
-    """Let width and contrast be edited where they are given."""
+    """Enable the fields of width and contrast where they are given."""
     why = tr("Found automatically; take away the tick above to give it.")
     for key in ("width_px", "contrast"):
         form.set_editable(key, not automatic, why)

@@ -17,7 +17,7 @@ _RECORDED = re.compile(rf"(^|/){_RECORDINGS}/[a-z]+-\d{{8}}-\d{{6}}([ -]\d+)?$")
 
 
 def folder_of(model: ProjectModel, step: Step) -> Path | None:
-    """The folder of a step's pictures, or None if there is none yet."""
+    """Return the folder of a step's pictures, or None if there is none yet."""
     stored = getattr(model.project.sources, step)
     return source_folder(model.folder, stored) if stored and model.folder is not None else None
 
@@ -38,7 +38,7 @@ def put_source(model: ProjectModel, step: Step, folder: Path, label: str, *, kee
 
 
 def recording_folder(project: Path, step: Step) -> Path:
-    """A folder for a live recording that is not there yet, named by the step and the time."""
+    """Make a new path for a live recording, named by the step and the time."""
     return free_folder(project / _RECORDINGS, f"{step}-{datetime.now():%Y%m%d-%H%M%S}")
 
 

@@ -30,7 +30,7 @@ ANY_HEIGHT = 16_777_215
 
 
 class StepPage(QWidget):
-    """A page of the wizard.
+    """Page of the wizard.
 
     `refresh` is called once in the turn of the event loop after its presenter has changed, however often it did, and
     only while the page is visible. A page that was hidden meanwhile is refreshed before it is shown, by whoever shows
@@ -41,7 +41,7 @@ class StepPage(QWidget):
 
     @property
     def takes_the_window(self) -> bool:
-        """Whether what goes on here wants all the room there is: nothing else can be done meanwhile."""
+        """Whether the present work uses the whole window: nothing else can be done meanwhile."""
         return False
 
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
@@ -68,14 +68,14 @@ class StepPage(QWidget):
         self.presenter.model.opened.connect(self.scroll_to_top)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
 
     def scroll_to_top(self) -> None:
-        """Show the side from its top: as another project is open, or something else is edited there."""
+        """Scroll the side to its top: another project is open, or something else is edited there."""
         self.scrolled.verticalScrollBar().setValue(0)
 
     def enter(self, editor: QWidget | None) -> None:
-        """Have something entered at the side: its field in sight, with the keys; None: nothing."""
+        """Show a field at the side and give it the focus; None: nothing."""
         if editor is None:
             return
         self.refreshing.at_once()  # or what it shows anew would take the side back to its top
@@ -84,7 +84,7 @@ class StepPage(QWidget):
         editor.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False, kept: str = "") -> QCollapsible:
-        """A titled panel at the side that can be folded away; under the name `kept` it is remembered whether it is."""
+        """Add a panel at the side that can be folded; under the name `kept` its folding is remembered."""
         panel = QCollapsible(title)
         panel.setDuration(0)
         outside, inside = panel.layout(), panel.content().layout()
@@ -109,15 +109,15 @@ class StepPage(QWidget):
         return panel
 
     def add_to_side(self, widget: QWidget) -> None:
-        """A widget at the side that is always there, below what was added before."""
+        """Add a widget at the side that is always visible, below what was added before."""
         self.side.insertWidget(self.side.count() - 1, widget)
 
     def pin_to_side(self, widget: QWidget) -> None:
-        """A widget at the top of the side that stays in sight whatever is scrolled below it."""
+        """Add a widget at the top of the side that stays in sight whatever is scrolled below it."""
         self.pinned.addWidget(widget)
 
     def add_list(self, title: str, widget: QWidget) -> QCollapsible:
-        """A panel with a list that grows with the page."""
+        """Add a panel with a list that grows with the page."""
         self._lists.append(widget)
         self._fit_lists()
         return self.add_panel(title, widget, kept="list")
@@ -135,7 +135,7 @@ class StepPage(QWidget):
             self.refreshing.soon()  # icons and colours are the theme's
 
     def prepare(self) -> None:
-        """The page is about to be shown: let it show what the presenter says now."""
+        """Update the page, which is about to be shown."""
         if self._stale:
             self._stale = False
             self.refresh()

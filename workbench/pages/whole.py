@@ -24,7 +24,7 @@ EDIT = "whole job"
 
 
 def why_not_measure_all(*, running: bool, live: bool, left: frozenset[str], scan_chosen: bool, read_only: bool) -> str:
-    """Why not everything can be measured now; `left` are the steps that are not up to date.
+    """Give the reason why not everything can be measured now; `left` are the steps that are not up to date.
 
     `running`: it is being done, or waits for its turn. `live`: a live source is on, or what it recorded is still being
     put into the project. `scan_chosen`: pictures of a scan are. `read_only`: nothing can be written into the project.
@@ -42,7 +42,7 @@ def why_not_measure_all(*, running: bool, live: bool, left: frozenset[str], scan
 
 
 class MeasuringAll(QObject):
-    """Does every step that is not up to date, from the pictures to the report, and stops at a decision for a person.
+    """Job that does every step that is not up to date, to the report, and stops where the user has to decide.
 
     Each step is in the project as soon as it is done: what was done before a cancel stays.
     """
@@ -60,12 +60,12 @@ class MeasuringAll(QObject):
 
     @property
     def running(self) -> bool:
-        """Whether it is being done, or waits for its turn."""
+        """Whether it is running, or waits for its turn."""
         return self._task is not None
 
     @property
     def cannot_start(self) -> str:
-        """Why nothing can be done now, or ""."""
+        """Reason why it cannot be started now, or ""."""
         model = self._model
         return why_not_measure_all(
             running=self.running,
@@ -76,7 +76,7 @@ class MeasuringAll(QObject):
         )
 
     def start(self) -> None:
-        """Do it."""
+        """Start the job."""
         folder = self._model.folder
         if folder is None or self.cannot_start:
             return
@@ -97,7 +97,7 @@ class MeasuringAll(QObject):
         self.changed.emit()
 
     def opened(self) -> None:
-        """Another project: stop."""
+        """Stop: another project is open."""
         self.why_stopped = ""
         if self._task is not None:
             self._task.cancel()

@@ -15,7 +15,7 @@ from workbench.work.jobs import Job
 
 
 class Acceptance(QObject):
-    """Which calibration of one step is accepted, and which ones are rejected; `keep` is the job that keeps one."""
+    """State of acceptance of one step's calibrations; `keep` is the job that stores one."""
 
     changed = Signal()
     kept = Signal()
@@ -30,24 +30,24 @@ class Acceptance(QObject):
 
     @property
     def accepted(self) -> str:
-        """The id of the accepted one, or ""."""
+        """Id of the accepted calibration, or ""."""
         return str(getattr(self._model.project.accepted, self._step))
 
     @property
     def label(self) -> str:
-        """What the job is called that keeps one."""
+        """Name of the job that stores a calibration."""
         return self._words()[2]
 
     def is_rejected(self, id_: str) -> bool:
-        """Whether this one is not wanted."""
+        """Whether this calibration is rejected."""
         return id_ in self._model.project.rejected
 
     def forget(self) -> None:
-        """Another project."""
+        """Forget all: another project is open."""
         self.keeping = False
 
     def accept(self, *made: Any) -> None:
-        """Keep a calibration, and measure with it from now on; `made` is what keeping it takes."""
+        """Store a calibration and measure with it from now on; `made` are the arguments of storing it."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.keeping:
             return
@@ -77,7 +77,7 @@ class Acceptance(QObject):
         )
 
     def reject(self, id_: str) -> None:
-        """Do not measure with this one."""
+        """Reject this calibration."""
         now = self._model.project
         after = self._with(now, "") if id_ == self.accepted else now
         self._model.edit(self._words()[1], replace(after, rejected=now.rejected | {id_}))

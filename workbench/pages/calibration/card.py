@@ -18,7 +18,7 @@ STEADY = (Stage.SEARCHING, Stage.SOLVING, Stage.SOLVED, Stage.REJECTED, Stage.AC
 
 
 class CalibrationCard(StageCard):
-    """The stage; the next thing to do is the primary button."""
+    """Card with the stage; the next action is the primary button."""
 
     def __init__(self, presenter: Any, parent: QWidget | None = None) -> None:
         self._presenter = presenter

@@ -13,7 +13,7 @@ from workbench.work import jobs
 
 
 class CurrentPicture(QObject):
-    """Reads the `current` picture, once: again only where another one is chosen.
+    """Reader of the `current` picture; it reads again only where another one is chosen.
 
     `label` names the reading; of those of one label only the newest is wanted.
     """
@@ -29,28 +29,28 @@ class CurrentPicture(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Look at nothing."""
+        """Choose no picture."""
         self.current = ""
         self._read: tuple[Any, ...] = ()
 
     def again(self) -> None:
-        """What was looked at is wanted again."""
+        """Read the current picture again."""
         self._read = ()
         self.refresh()
 
     def names(self) -> Sequence[str]:
-        """The pictures there are."""
+        """List the names of the pictures."""
         return [self._work.name_of(path) for path in self._work.pictures or ()]
 
     def follow(self) -> None:
-        """Pictures or their calibration are others; look at the first one where the current one is gone."""
+        """Follow a change of pictures or calibration; choose the first picture where the current one is gone."""
         names = self.names()
         if self.current not in names:
             self.current = names[0] if names else ""
         self.refresh()
 
     def refresh(self) -> None:
-        """Have the current picture read."""
+        """Read the current picture."""
         name = self.current
         path = next((path for path in self._work.pictures or () if self._work.name_of(path) == name), None)
         if not name or path is None or self._read == (name,):

@@ -21,7 +21,7 @@ from workbench.work import jobs
 
 
 class StoredCalibrations(QObject):
-    """`entries` are StoredCalibration of one step, the newest first; `chosen` is the id of one of them, or ""."""
+    """Stored calibrations of one step, `entries`, the newest first; `chosen` is the id of one of them, or ""."""
 
     changed = Signal()
 
@@ -37,7 +37,7 @@ class StoredCalibrations(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Nothing is known yet."""
+        """Clear the list."""
         self.entries: tuple[Any, ...] = ()
         self.chosen = ""
 
@@ -61,7 +61,7 @@ class StoredCalibrations(QObject):
         )
 
     def choose(self, id_: str) -> None:
-        """Speak of this one."""
+        """Choose the calibration of this id."""
         if id_ != self.chosen:
             self.chosen = id_
             self._choice_changed()
@@ -69,11 +69,11 @@ class StoredCalibrations(QObject):
 
     @property
     def accepted(self) -> str:
-        """The id of the one in use, or ""."""
+        """Id of the accepted calibration, or ""."""
         return self._acceptance.accepted
 
     def why_not_restore(self) -> str:
-        """Why the chosen one cannot be accepted again, or ""."""
+        """Give the reason why the chosen one cannot be accepted again, or ""."""
         entry = next((entry for entry in self.entries if entry.id == self.chosen), None)
         job = self._bench.measuring.current
         running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
@@ -120,7 +120,7 @@ class StoredCalibrations(QObject):
 
 
 class CameraHistory(StoredCalibrations):
-    """The camera's; `changes` are those from the chosen one to the one shown."""
+    """Stored calibrations of the camera; `changes` are those from the chosen one to the one shown."""
 
     STEP = "camera"
 
@@ -133,7 +133,7 @@ class CameraHistory(StoredCalibrations):
         return tr("Reading the history"), tr("restore a camera calibration")
 
     def shown_is(self, calibration: CameraCalibration | None) -> None:
-        """Another calibration is shown."""
+        """Set the calibration that is shown, with which others are compared."""
         if calibration is not self._shown:
             self._shown = calibration
             if self.chosen:
@@ -141,7 +141,7 @@ class CameraHistory(StoredCalibrations):
                 self.changed.emit()
 
     def why_not_import(self) -> str:
-        """Why no calibration of another program can be taken now, or ""."""
+        """Give the reason why no calibration of another program can be imported now, or ""."""
         job = self._bench.measuring.current
         running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
         if self._live.running:
@@ -149,7 +149,7 @@ class CameraHistory(StoredCalibrations):
         return tr("A job is not finished yet: {job}.", job=running) if running else self._bench.cannot_write
 
     def take(self, path: Path) -> None:
-        """Take a camera that OpenCV or ROS has calibrated for the accepted one; undoable."""
+        """Accept a camera that OpenCV or ROS has calibrated; undoable."""
         folder = self._model.folder
         if folder is None or self.why_not_import():
             return
@@ -201,7 +201,7 @@ class CameraHistory(StoredCalibrations):
 
 
 class PlanesHistory(StoredCalibrations):
-    """The laser planes'."""
+    """Stored calibrations of the laser planes."""
 
     STEP = "planes"
 

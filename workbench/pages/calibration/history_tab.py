@@ -18,7 +18,7 @@ from workbench.views.lists.data_table import DataTable
 
 
 class HistoryTab(QWidget):
-    """A list of them, what is to be said of the chosen one, and the button that restores it."""
+    """Tab with the list of stored calibrations, a text on the chosen one, and the button that restores it."""
 
     def __init__(self, presenter: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -44,7 +44,7 @@ class HistoryTab(QWidget):
         return ""
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         history = self._presenter.history
         listed = self._listed(history.entries, history.accepted)
         if listed != self._shown:

@@ -33,7 +33,7 @@ BARS_HEIGHT, BARS_SHARE = 150, 0.28
 
 
 class CalibrationPage(StepPage):
-    """Record, calibrate, judge, accept.
+    """Page of a calibration: record, calibrate, judge, accept.
 
     A subclass makes the parts named below before it calls `_build`.
     """
@@ -235,7 +235,7 @@ class CalibrationPage(StepPage):
 
 
 class Result(QWidget):
-    """How good the calibration shown is."""
+    """Panel with the quality of the calibration shown."""
 
     def __init__(self, presenter: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -249,9 +249,9 @@ class Result(QWidget):
 
     @abstractmethod
     def refresh(self) -> bool:
-        """Show the calibration; whether there is anything to say."""
+        """Show the calibration; returns whether there is anything to show."""
 
 
 def known(value: float) -> float | None:
-    """None for NaN."""
+    """Return None for NaN, else the value."""
     return None if math.isnan(value) else value

@@ -22,7 +22,7 @@ LIVE = "live"
 
 
 class PictureTab(QWidget):
-    """One picture with what was found in it, or the live picture."""
+    """Tab with one picture and what was found in it, or with the live picture."""
 
     DETAIL: ClassVar[type]
     """What a live picture comes with once it has been looked at."""
@@ -65,7 +65,7 @@ class PictureTab(QWidget):
     # ---- the same
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p, live = self._presenter, self._presenter.live
         self.hints.setVisible(live.running)
         self.line.setVisible(not live.running and bool(p.current))

@@ -27,7 +27,7 @@ from workbench.work.jobs import Job
 
 
 class CalibrationPresenter(StepPresenter):
-    """Pictures found, solved and judged; what is accepted.
+    """Presenter of a calibration: pictures found, solved and judged, and what is accepted.
 
     A subclass says in `KEEP` which job keeps an accepted one, brings its `work`, `look`, `history` and `target`, and
     says what differs in words.
@@ -66,7 +66,7 @@ class CalibrationPresenter(StepPresenter):
     @property
     @abstractmethod
     def candidate(self) -> str:
-        """The id of the calibration that is shown, or ""."""
+        """Id of the calibration that is shown, or ""."""
 
     @abstractmethod
     def _is_current(self) -> bool:
@@ -94,22 +94,22 @@ class CalibrationPresenter(StepPresenter):
 
     @abstractmethod
     def views(self) -> tuple[Any, ...]:
-        """The views (or poses) as the calibration shown judges them."""
+        """List the views (or poses) as the calibration shown judges them."""
 
     @abstractmethod
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """What the target shows in the pictures there are, without those left out by hand."""
+        """List the views found in the pictures, without those left out by hand."""
 
     # ---- state
 
     @property
     def current(self) -> str:
-        """The picture that is looked at."""
+        """Name of the current picture."""
         return self.look.current
 
     @property
     def stage(self) -> Stage:
-        """How far the calibration is."""
+        """Stage of the calibration."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -141,12 +141,12 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def can_search(self) -> str:
-        """Why the pictures cannot be searched now, or ""."""
+        """Reason why the pictures cannot be searched now, or ""."""
         return self._sentence(buttons_of(self._facts()).run)
 
     @property
     def can_accept(self) -> str:
-        """Why nothing can be accepted now, or ""."""
+        """Reason why nothing can be accepted now, or ""."""
         return self._sentence(buttons_of(self._facts()).accept)
 
     @property
@@ -159,7 +159,7 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def can_reject(self) -> str:
-        """Why nothing can be rejected now, or ""."""
+        """Reason why nothing can be rejected now, or ""."""
         return self._sentence(buttons_of(self._facts()).reject)
 
     def _sentence(self, why: WhyNot) -> str:
@@ -180,37 +180,37 @@ class CalibrationPresenter(StepPresenter):
     # ---- pictures
 
     def choose(self, name: str) -> None:
-        """Look at this picture."""
+        """Choose this picture as the current one."""
         if name != self.current:
             self.look.current = name
             self.look.refresh()
             self.changed.emit()
 
     def quality_of(self, name: str) -> Any:
-        """A view as the calibration shown judges it; None if it is not among them."""
+        """Return a view as the calibration shown judges it; None if it is not among them."""
         return next((view for view in self.views() if view.name == name), None)
 
     def short(self, name: str) -> str:
-        """What a picture is called within its folder."""
+        """Return the name of a picture within its folder."""
         return name.removeprefix(f"{self.step}/")
 
     def stored(self, name: str) -> str:
-        """What the project calls a picture."""
+        """Return the name of a picture in the project."""
         return f"{self.step}/{self.short(name)}"
 
     @property
     def folder(self) -> Path | None:
-        """The folder of the pictures."""
+        """Folder of the pictures."""
         return folder_of(self.model, self.step)
 
     def use_folder(self, folder: Path) -> None:
-        """Take the pictures of a folder, and search them."""
+        """Use the pictures of a folder, and search them."""
         self.live.stop()
         put_source(self.model, self.step, folder, self._source_label())
         self.work.search()
 
     def set_used(self, names: Sequence[str], used: bool) -> None:
-        """Let pictures count, or leave them out; undoable. While they are taken live, put them aside."""
+        """Use pictures, or leave them out; undoable. While they are taken live, put them aside."""
         if self.live.running:
             if not used:
                 for name in names:
@@ -231,12 +231,12 @@ class CalibrationPresenter(StepPresenter):
     # ---- what the user does
 
     def accept(self) -> None:
-        """Measure with the calibration that is shown, from now on; undoable."""
+        """Accept the calibration that is shown; undoable."""
         if not self.can_accept:
             self.acceptance.accept(*self._made())
 
     def reject(self) -> None:
-        """Do not measure with the calibration that is shown; undoable."""
+        """Reject the calibration that is shown; undoable."""
         if not self.can_reject:
             self.acceptance.reject(self.candidate)
 
@@ -246,7 +246,7 @@ class CalibrationPresenter(StepPresenter):
             self.work.search()
 
     def do_accept(self) -> None:
-        """Accept."""
+        """Accept the calibration that is shown, by shortcut."""
         self.accept()
 
     def do_live(self) -> None:
@@ -254,7 +254,7 @@ class CalibrationPresenter(StepPresenter):
         self.live.toggle()
 
     def do_capture(self) -> None:
-        """Take this picture."""
+        """Take this picture, by shortcut."""
         self.live.capture()
 
     # ---- what happens elsewhere

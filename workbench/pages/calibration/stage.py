@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Stage(StrEnum):
-    """How far a calibration is."""
+    """Stage of a calibration."""
 
     NO_CAMERA = "no camera"
     NONE = "none"
@@ -25,7 +25,7 @@ class Stage(StrEnum):
 
 
 class WhyNot(StrEnum):
-    """Why something cannot be done now; nothing: it can."""
+    """Reason why an action is not possible now; "": it is."""
 
     NOTHING = ""
     LIVE = "live"
@@ -40,7 +40,7 @@ class WhyNot(StrEnum):
 
 
 class Buttons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     run: WhyNot
     accept: WhyNot
@@ -48,7 +48,7 @@ class Buttons(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """What the stage rests on."""
+    """Facts from which stage and buttons follow."""
 
     live: bool
     """Pictures are being taken."""
@@ -79,7 +79,7 @@ class Facts(NamedTuple):
 
 
 class WhyNotRestore(StrEnum):
-    """Why the calibration chosen in the history cannot be accepted again; nothing: it can."""
+    """Reason why the calibration chosen in the history cannot be accepted again; "": it can."""
 
     NOTHING = ""
     NONE_KEPT = "none kept"
@@ -92,7 +92,7 @@ class WhyNotRestore(StrEnum):
 
 
 class RestoreFacts(NamedTuple):
-    """What restoring one rests on."""
+    """Facts from which it follows whether a calibration can be restored."""
 
     kept: bool
     """The history holds some."""
@@ -110,7 +110,7 @@ class RestoreFacts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """How far it is."""
+    """Derive the stage from the facts."""
     if facts.live:
         return Stage.LIVE
     if facts.searching:
@@ -133,12 +133,15 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def buttons_of(facts: Facts) -> Buttons:
-    """What can be done."""
+    """Derive from the facts why each button is disabled."""
     return Buttons(_run(facts), _accept(facts), _reject(facts))
 
 
 def why_not_restore(facts: RestoreFacts) -> WhyNotRestore:
-    """Whether the chosen one can be restored; what is chosen is spoken of first, as waiting does not help there."""
+    """Give the reason why the chosen one cannot be restored.
+
+    Reasons in the choice come first, as waiting does not help there.
+    """
     reasons = (
         (not facts.kept, WhyNotRestore.NONE_KEPT),
         (not facts.chosen, WhyNotRestore.NONE_CHOSEN),

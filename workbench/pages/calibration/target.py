@@ -22,7 +22,7 @@ PAPERS = ("A4", "A3", "A2", "Letter", "Tabloid")
 
 
 def values_of(target: Target) -> dict[str, Any]:
-    """The fields of a target; what it does not have is not among them."""
+    """Return the fields of a target that it has."""
     match target:
         case Checkerboard():
             return {
@@ -53,7 +53,7 @@ def values_of(target: Target) -> dict[str, Any]:
 
 
 def target_of(values: Mapping[str, Any]) -> Target:
-    """The target of these fields; ValueError with one sentence if there is none like that."""
+    """Make the target of these fields; ValueError with one sentence if there is none like that."""
     columns, rows, size = int(values.get("columns", 0)), int(values.get("rows", 0)), float(values["size_mm"])
     match values["kind"]:
         case "checkerboard":
@@ -68,7 +68,7 @@ def target_of(values: Mapping[str, Any]) -> Target:
 
 
 def changed_target(target: Target, field: str, value: Any) -> Target:
-    """The target with one field changed; another kind comes in its usual sizes. ValueError as `target_of`."""
+    """Change one field of the target; another kind gets its default sizes. ValueError as `target_of`."""
     values = values_of(target)
     if field != "kind":
         return target_of({**values, field: value})
@@ -90,7 +90,7 @@ USUAL_U = 0.5
 
 
 def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
-    """How true a target is, as fields of a form; "made" is "" where nothing is stated, "stated" of own values."""
+    """Return a target's tolerance as fields of a form; "made" is "" where nothing is stated, "stated" of own values."""
     usual = next((name for name, one in MADE.items() if one == tolerance), "stated")
     scale = tolerance.scale_sd
     return {
@@ -101,7 +101,7 @@ def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
 
 
 def changed_tolerance(tolerance: BoardTolerance, field: str, value: Any) -> BoardTolerance:
-    """How true a target is with one of MADE_FIELDS changed; "made" sets both others, but for "stated"."""
+    """Change one of MADE_FIELDS of the tolerance; "made" sets both others, except for "stated"."""
     match field:
         case "made":
             return tolerance if value == "stated" else MADE.get(value, BoardTolerance())
@@ -111,7 +111,7 @@ def changed_tolerance(tolerance: BoardTolerance, field: str, value: Any) -> Boar
 
 
 class TargetChoice(QObject):
-    """`which` target of the rig; `label` names the edit, as "change the camera's target"."""
+    """Choice of the target of the rig that is named by `which`; `label` names the edit in the undo list."""
 
     target_refused = Signal(str, str)
     """Field and why it cannot be so; an empty sentence if it can."""
@@ -125,12 +125,12 @@ class TargetChoice(QObject):
 
     @property
     def target(self) -> Target:
-        """The target as it is."""
+        """Target of the project."""
         target: Target = getattr(self._model.project.rig, self._which)
         return target
 
     def target_values(self) -> dict[str, Any]:
-        """The target as the fields of a form."""
+        """Return the target as the fields of a form."""
         rig = self._model.project.rig
         values = values_of(self.target) | values_of_tolerance(getattr(rig, self._board))
         if self._which != "plane_target":
@@ -151,7 +151,7 @@ class TargetChoice(QObject):
         self._model.edit(self._label, after, f"{self._which} {field}")
 
     def take_counted(self, columns: int, rows: int) -> None:
-        """Take over the columns and rows that the pictures show; undoable."""
+        """Set columns and rows to those found in the pictures; undoable."""
         target = changed_target(changed_target(self.target, "columns", columns), "rows", rows)
         changed: dict[str, Any] = {self._which: target}
         project = self._model.project

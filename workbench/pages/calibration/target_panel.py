@@ -22,7 +22,7 @@ from workbench.views.layouts import in_column, in_row
 
 
 class HasTarget(Protocol):
-    """What the panel needs of a presenter."""
+    """Interface of a presenter with a target."""
 
     target_refused: SignalInstance
     """Field of the target and why it cannot be so; an empty sentence if it can."""
@@ -33,7 +33,7 @@ class HasTarget(Protocol):
 
 
 class TargetPanel(QWidget):
-    """What the camera is shown. `kinds` are those offered, in the order of the list."""
+    """Panel with kind, size and tolerance of the target. `kinds` are those offered, in the order of the list."""
 
     def __init__(self, presenter: HasTarget, kinds: tuple[str, ...], parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -180,7 +180,7 @@ class TargetPanel(QWidget):
 
 
 def kind_in_words(kind: str) -> str:
-    """A kind of target as it is called on screen."""
+    """Return the displayed name of a kind of target."""
     return {
         "checkerboard": tr("Checkerboard"),
         "charuco": tr("ChArUco board"),

@@ -32,7 +32,7 @@ Solution = TypeVar("Solution")
 
 
 class StepPictures(QObject):
-    """`paths` of a step's pictures, None until they are listed; `thumbnails` by the name that `named` gives a path.
+    """Pictures of a step: `paths`, None until they are listed; `thumbnails` by the name that `named` gives a path.
 
     A path whose name is "" is no picture of its own and is left out.
     """
@@ -51,14 +51,14 @@ class StepPictures(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Another project."""
+        """Forget all: another project is open."""
         self.paths: tuple[Path, ...] | None = None
         self.thumbnails: dict[str, Any] = {}
         self._listed = self._thumbnails_of = ""
         self._told: set[str] = set()
 
     def follow(self) -> None:
-        """The project is another: list its pictures, unless that was done."""
+        """List the pictures of the changed project, unless that was done."""
         project, folder = self._model.project, folder_of(self._model, self._step)
         of = f"{getattr(project.sources, self._step)}|{project.rig.channel_of(self._step)}|{project.rig.mosaic}"
         if of == self._listed:
@@ -88,7 +88,7 @@ class StepPictures(QObject):
                 self._bench.notices.warning(told)
 
     def list_again(self) -> None:
-        """The folder may hold others by now; what is shown stands until they are listed."""
+        """List the folder again; what is shown stays until that is done."""
         self._listed = ""
         self.follow()
 
@@ -115,7 +115,7 @@ class StepPictures(QObject):
 
 
 class CalibrationWork(QObject, Generic[Found, Solution]):
-    """Finds what one step's pictures show (`Found`), and solves (`Solution`).
+    """Worker that finds the content of one step's pictures (`Found`), and solves (`Solution`).
 
     `found` and `calibration` are of the project as it is, or None; while a new solution is on its way (`solving`) the
     last one stands. `problem` says why there is none. What finding rests on is `FOUND_BY`; solving rests on all of the
@@ -155,7 +155,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
     @staticmethod
     @abstractmethod
     def name_of(path: Path) -> str:
-        """What the project calls a picture; "" for one that belongs to another."""
+        """Return the name of a picture in the project; "" for one that belongs to another."""
 
     @abstractmethod
     def _recall(self, folder: Path, project: Project) -> None:
@@ -171,7 +171,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
 
     @abstractmethod
     def left_out(self) -> dict[str, Message]:
-        """Pictures in which nothing was found that can be used, by name, and why."""
+        """Return the pictures in which nothing usable was found, by name, with the reason."""
 
     def _in_words(self, problem: Any) -> str:
         return text_of(problem)
@@ -181,12 +181,12 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
 
     @property
     def pictures(self) -> tuple[Path, ...] | None:
-        """The pictures there are; None until they are listed."""
+        """Pictures of the step; None until they are listed."""
         return self._pictures.paths
 
     @property
     def thumbnails(self) -> dict[str, Any]:
-        """Small pictures, by name."""
+        """Small pictures by name."""
         return self._pictures.thumbnails
 
     @property
@@ -195,7 +195,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         return self.search_task is not None
 
     def opened(self) -> None:
-        """Another project: forget, list its pictures, and take up what has been found in them."""
+        """Load another project: list its pictures, and read what has been found in them."""
         if self.search_task is not None:
             self.search_task.cancel()
         self._forget()
@@ -204,13 +204,13 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
             self.recall()
 
     def recall(self) -> None:
-        """Take up what was found in the pictures and made of it before, unless it is known or on its way."""
+        """Read what was found in the pictures and solved before, unless it is known or being read."""
         folder, project = self._model.folder, self._model.project
         if folder is not None and self.found is None and not self.searching:
             self._recall(folder, project)
 
     def follow(self) -> None:
-        """The project is another: show what is known for it, and solve again if it is known what its pictures show."""
+        """Show what is known for the changed project, and solve again if the content of its pictures is known."""
         project = self._model.project
         self._pictures.follow()
         found, solve = self.found_key(project), self.solve_key(project)
@@ -228,7 +228,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.changed.emit()
 
     def search(self) -> None:
-        """Find what there is in all pictures, then solve."""
+        """Search all pictures, then solve."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.searching or not self._can_search(project):
             return
@@ -247,12 +247,12 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.changed.emit()
 
     def found_key(self, project: Project) -> Key:
-        """What finding rests on, as it is in `project`."""
+        """Return the key of all that finding rests on in `project`."""
         keys = inputs_of(self.STEP, project, {})
         return tuple(keys.get(name, "") for name in FOUND_BY[self.STEP])
 
     def solve_key(self, project: Project) -> Key:
-        """What solving rests on, as it is in `project`; it begins with `found_key`."""
+        """Return the key of all that solving rests on in `project`; it begins with `found_key`."""
         keys = inputs_of(self.STEP, project, {})
         known = (*FOUND_BY[self.STEP], ACCEPTED[self.STEP])
         others = [value for name, value in keys.items() if name not in known]

@@ -20,7 +20,7 @@ from workbench.views.plots.bars import Bar
 
 
 class CameraPage(CalibrationPage):
-    """Record, calibrate, judge, accept."""
+    """Page of the camera calibration: record, calibrate, judge, accept."""
 
     UNIT = "px"
     presenter: CameraPresenter

@@ -21,7 +21,7 @@ TARGETS = ("checkerboard", "charuco", "circle_grid")
 
 
 class CameraCard(CalibrationCard):
-    """The stage; the next thing to do is the primary button."""
+    """Card with the stage; the next action is the primary button."""
 
     def _titles(self) -> dict[Stage, str]:
         return {
@@ -60,7 +60,7 @@ class CameraCard(CalibrationCard):
 
 
 class CameraResult(Result):
-    """How good the calibration is, and what is to be noted."""
+    """Panel with the quality of the calibration, and its notes."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
@@ -76,7 +76,7 @@ class CameraResult(Result):
 
 
 class CameraModelForm(SettingsForm):
-    """What is solved for."""
+    """Form of the parameters to be solved for."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)

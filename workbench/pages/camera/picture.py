@@ -23,7 +23,7 @@ FACTORS = (1, 30, 100, 300, 1000)
 
 
 class ViewTab(PictureTab):
-    """One view with its corners and residuals, or the live picture."""
+    """Tab with one view, its corners and residuals, or with the live picture."""
 
     DETAIL, CORNER_SIZE = CameraDetail, 9
 

@@ -26,7 +26,7 @@ from workbench.work import jobs
 
 
 class CameraPresenter(CalibrationPresenter):
-    """The camera: its pictures found, solved and judged; what is accepted."""
+    """Presenter of the camera: its pictures found, solved and judged, and what is accepted."""
 
     step = "camera"
     KEEP = jobs.ACCEPT_CAMERA
@@ -51,7 +51,7 @@ class CameraPresenter(CalibrationPresenter):
 
     @property
     def candidate(self) -> str:
-        """The id of the calibration that is shown, or ""."""
+        """Id of the calibration that is shown, or ""."""
         calibration = self.work.calibration
         return camera_id(calibration.camera) if calibration is not None else ""
 
@@ -88,11 +88,13 @@ class CameraPresenter(CalibrationPresenter):
 
     @property
     def counted(self) -> tuple[int, int] | None:
-        """Columns and rows of the board that is seen in place of the one entered; None if there is none such."""
+        """Columns and rows of the board that is found instead of the one entered; None if there is none such."""
         return self._counted if self.live.running else self.work.counted
 
     def take_counted(self) -> None:
-        """Take over what is seen; undoable. Live it is looked for at once, else the pictures are searched again."""
+        """Set the target to the one found; undoable. Live it is looked for at once, else the pictures are searched
+        again.
+        """
         counted = self.counted
         if counted is not None:
             self.target.take_counted(*counted)
@@ -101,7 +103,7 @@ class CameraPresenter(CalibrationPresenter):
     # ---- what is solved for
 
     def model_values(self) -> dict[str, Any]:
-        """Which parameters are free, and what is done with what does not fit."""
+        """Return which parameters are free, and how outliers are treated."""
         return values_of("camera", self.project.options)
 
     def set_model(self, field: str, value: Any) -> None:
@@ -112,11 +114,11 @@ class CameraPresenter(CalibrationPresenter):
     # ---- views
 
     def views(self) -> tuple[ViewQuality, ...]:
-        """The views as the calibration shown judges them."""
+        """List the views as the calibration shown judges them."""
         return self.work.calibration.views if self.work.calibration is not None else ()
 
     def set_threshold(self, limit: float) -> None:
-        """Leave out the views above a limit in px, and let those count that only the last limit left out."""
+        """Leave out the views above a limit in px, and use again those that only the last limit left out."""
         before, self.threshold = self.threshold, limit
         judged = {one.name: one.rms_px for one in self.views() if one.used or one.exclusion is Exclusion.BY_HAND}
         above = {name for name, rms in judged.items() if rms > limit}
@@ -126,7 +128,7 @@ class CameraPresenter(CalibrationPresenter):
         self.changed.emit()
 
     def corners_of(self, name: str) -> Array | None:
-        """Where the target's corners (N, 2) were found in a view; None if they were not (yet)."""
+        """Return the target's corners (N, 2) found in a view; None if they were not (yet)."""
         if self.work.seen is None:
             return None
         return next((view.uv for view in self.work.seen.found if view.name == name), None)
@@ -146,7 +148,7 @@ class CameraPresenter(CalibrationPresenter):
         super().project_changed(before, after)
 
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """What the target shows in the pictures there are, without those left out by hand."""
+        """List the views found in the pictures, without those left out by hand."""
         found = self.work.seen.found if self.work.seen is not None else ()
         return tuple(view for view in found if view.name not in self.project.options.excluded)
 

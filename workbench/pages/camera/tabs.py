@@ -28,7 +28,7 @@ from workbench.views.plots.residuals import ResidualPlot
 
 
 class CoverageTab(QWidget):
-    """Which parts of the picture the views cover, and what is missing in words."""
+    """Tab with the parts of the picture that the views cover, and what is missing in words."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -39,7 +39,7 @@ class CoverageTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         work = self._presenter.work
         self.missing.setText(words.missing_sentence(work.judgement) or tr("Nothing is known yet."))
         if work.judgement is self._drawn and work.judgement is not None:
@@ -60,7 +60,7 @@ class CoverageTab(QWidget):
 
 
 class ResidualTab(QWidget):
-    """All residuals that count, over the picture and as a scatter."""
+    """Tab with all residuals that count, over the picture and as a scatter."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -71,7 +71,7 @@ class ResidualTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         work = self._presenter.work
         residuals = work.judgement.residuals if work.judgement is not None else None
         self.plot.setVisible(residuals is not None)
@@ -95,7 +95,7 @@ class ResidualTab(QWidget):
 
 
 class ExpectedTab(QWidget):
-    """The error to be expected in mm over the picture."""
+    """Tab with the expected error in mm over the picture."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -113,7 +113,7 @@ class ExpectedTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         work = self._presenter.work
         depths = work.judgement.expected if work.judgement is not None else ()
         self.map.setVisible(bool(depths))
@@ -134,7 +134,7 @@ class ExpectedTab(QWidget):
 
 
 class CameraHistoryTab(HistoryTab):
-    """The calibrations that were accepted, compared with the one shown."""
+    """Tab with the calibrations accepted before, compared with the one shown."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)

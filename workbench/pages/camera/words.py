@@ -16,7 +16,7 @@ from workbench.pages.words import mm, px, wording
 
 
 def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | None) -> tuple[Fact, ...]:
-    """What is told of the calibration."""
+    """Make the facts of the calibration."""
     if calibration is None:
         return ()
     expected = judgement.expected[1] if judgement is not None and judgement.expected else None
@@ -24,7 +24,7 @@ def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | Non
 
 
 def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
-    """What is different: parameter, then, now, change, its sd; a change that chance hardly explains is marked."""
+    """Make rows of what differs: parameter, then, now, change, its sd; a change beyond chance is marked."""
     said = wording()
     rows = () if changes is None else change_cells(changes)
     return [
@@ -38,7 +38,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
 
 
 def view_sentence(name: str, quality: ViewQuality | None) -> str:
-    """What is to be said of one view."""
+    """Make the sentence on one view."""
     if quality is None:
         return name
     if quality.used:
@@ -58,7 +58,7 @@ def view_sentence(name: str, quality: ViewQuality | None) -> str:
 
 
 def expected_sentence(expected: ExpectedError) -> str:
-    """What the map of expected errors shows."""
+    """Make the sentence on the map of expected errors."""
     return tr(
         "Standard uncertainty (k = 1) of where a point at depth {depth} is seen, from the camera's calibration alone: "
         "{median} over half of the picture, {worst} at worst. Where no corner was seen, the camera is extrapolated.",
@@ -69,7 +69,7 @@ def expected_sentence(expected: ExpectedError) -> str:
 
 
 def missing_sentence(judgement: ViewsJudgement | None) -> str:
-    """What to record next, or that nothing is missing."""
+    """Make the sentence on what to record next, or that nothing is missing."""
     if judgement is None:
         return ""
     return "\n".join(map(text_of, judgement.missing)) or tr("Nothing is missing: the views cover enough.")

@@ -17,7 +17,7 @@ from workbench.work import jobs
 
 
 class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
-    """Finds the target in the pictures, solves and judges.
+    """Worker that finds the target in the pictures, solves and judges.
 
     `seen`, `calibration`, `judgement` are of the project as it is, or None.
     """
@@ -29,12 +29,12 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
 
     @property
     def seen(self) -> SeenViews | None:
-        """What the pictures show; None until they have been searched."""
+        """Views found in the pictures; None until they have been searched."""
         return self.found
 
     @property
     def counted(self) -> tuple[int, int] | None:
-        """Columns and rows of the board that the pictures show in place of the one entered; None if not known."""
+        """Columns and rows of the board found in the pictures instead of the one entered; None if not known."""
         rested_on, problem = self._refused
         refused = isinstance(problem, OtherBoard) and rested_on == self._found_key and self.found is None
         return problem.counted if refused else None
@@ -48,7 +48,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
 
     @staticmethod
     def name_of(path: Path) -> str:
-        """What the project calls a picture."""
+        """Return the name of a picture in the project."""
         return f"camera/{path.name}"
 
     def _labels(self) -> tuple[str, str]:

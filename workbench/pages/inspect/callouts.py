@@ -35,7 +35,7 @@ NEXT_PAIR = "#next pair"
 
 
 class CalloutsTool(QObject):
-    """Puts the worst result of each feature over a 3D view."""
+    """Tool that puts the worst result of each feature over a 3D view."""
 
     def __init__(self, scene: SceneView, presenter: InspectPresenter) -> None:
         super().__init__(scene)
@@ -49,7 +49,7 @@ class CalloutsTool(QObject):
         scene.callout_chosen.connect(self._chosen)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         view = self._presenter.scan.view
         shown = self._presenter.bench.settings.callouts and view is not None
         self._scene.set_callouts(list(self._callouts(view)) if shown and view is not None else [])
@@ -107,7 +107,7 @@ class CalloutsTool(QObject):
         self._presenter.features.choose(name)
 
     def place_of(self, name: str) -> Array | None:
-        """Where the callout of a feature, or of the gauge's thickness, is on the surface; None if that is not known."""
+        """Return the place of the callout of a feature, or of the thickness, on the surface; None if not known."""
         view, features = self._presenter.scan.view, self._presenter.features
         if name == THICKNESS:
             return None if view is None or view.gauge is None else _of_thickness(view, view.gauge)

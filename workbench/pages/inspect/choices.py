@@ -36,7 +36,7 @@ Shape = Literal["points", "mesh", "both"]
 
 
 class SurfaceChoices(QWidget):
-    """The bar over the 3D view."""
+    """Bar over the 3D view."""
 
     changed = Signal()
     """The shape or the colour is another one."""
@@ -62,20 +62,20 @@ class SurfaceChoices(QWidget):
 
     @property
     def shape(self) -> Shape:
-        """What is shown of the surface."""
+        """Shape shown: points, mesh or both."""
         return next(name for name, button in self.shapes.items() if button.isChecked())
 
     @property
     def colour(self) -> str:
-        """What colours it: "faces", "sigma", "height", "deviation", "nominal", "compared", "frame", "plain"."""
+        """Kind of colours: "faces", "sigma", "height", "deviation", "nominal", "compared", "frame", "plain"."""
         return str(self.colours.currentData())
 
     def choose_colour(self, name: str) -> None:
-        """Colour by something else."""
+        """Choose another kind of colours."""
         self.colours.setCurrentIndex(self.colours.findData(name))
 
     def show_compared(self, why_not: str) -> None:
-        """Whether the deviation from another surface can be chosen, and why not."""
+        """Enable the choice of the deviation from another surface, or give the reason why not."""
         self._offer("compared", why_not)
 
     def show_nominal(self, there: bool) -> None:
@@ -91,7 +91,7 @@ class SurfaceChoices(QWidget):
             self._offer("nominal", tr("Choose a deviation from a nominal surface in the list of features."))
 
     def show_view(self, view: InspectionView | None, can: SurfaceButtons, clip_mm: float | None) -> None:
-        """Offer what there is to choose for a scan; nothing without one."""
+        """Offer the choices there are for a scan; none without one."""
         for name, button in self.shapes.items():
             enable(button, can.use if name == "points" else can.mesh, self._tips[name])
         for widget in (self.colours, self.limit, self.slider):

@@ -26,14 +26,14 @@ STEP = "thickness"
 
 
 class Target(NamedTuple):
-    """The region that a clicked face replaces: of a feature, at a place."""
+    """Region that a clicked face replaces: of a feature, at a place."""
 
     feature: str
     place: int
 
 
 class InspectClicked(QObject):
-    """From a click to a feature: nothing is an edit before `take`, and that is one."""
+    """Builder of features from clicks in 3D: nothing is an edit before `take`, and that is one."""
 
     changed = Signal()
 
@@ -49,7 +49,7 @@ class InspectClicked(QObject):
         features.changed.connect(self.follow)
 
     def start(self, mode: Mode, target: Target | None = None) -> None:
-        """From now on a click in 3D proposes a face, or two clicks a step; "" ends it.
+        """Start to propose a face by a click in 3D, or a step by two; "" ends it.
 
         A face is for the region `target`, or else for that of the chosen feature if it has just one, or for a new
         feature.
@@ -59,12 +59,12 @@ class InspectClicked(QObject):
         self._drop()
 
     def stop(self) -> None:
-        """End it; what was shown is dropped."""
+        """End it; the proposal is dropped."""
         if self.mode:
             self.start("")
 
     def click(self, point: int) -> None:
-        """A point of the view was clicked: grow the face there, instead of what was shown."""
+        """Grow the face at the clicked point, instead of the last proposal."""
         view, folder = self._scan.view, self._features.model.folder
         if view is None or folder is None or not self.mode or not 0 <= point < len(view):
             return
@@ -104,7 +104,7 @@ class InspectClicked(QObject):
         self.changed.emit()
 
     def take(self) -> None:
-        """Put what is shown into the plan, one edit, undoable, and measure it."""
+        """Add the proposal to the plan in one edit, undoable, and measure it."""
         proposal = self.proposal
         if proposal is None or self._growing is not None or (self.mode == "step" and len(proposal.faces) < 2):
             return
@@ -116,7 +116,7 @@ class InspectClicked(QObject):
         self._features.measure_first()
 
     def hint(self) -> str:
-        """What is shown, and what click and Enter do."""
+        """Describe the proposal, and what click and Enter do."""
         if self._growing is not None:
             return tr("Growing the face …")
         faces = () if self.proposal is None else self.proposal.faces
@@ -129,7 +129,7 @@ class InspectClicked(QObject):
         return shown + "\n" + self._what_enter_does() + " " + tr("Click elsewhere for another, Esc drops it.")
 
     def follow(self) -> None:
-        """Another feature was chosen: the next face is for that; or the one chosen has another name, or is gone."""
+        """Follow the choice of another feature, for which the next face is, or its new name."""
         features = self._features
         if not self.mode or features.chosen == self._chosen:
             return

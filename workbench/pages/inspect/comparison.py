@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class InspectComparison(QObject):
-    """Nothing of it is an edit of the project: it is written among its results, and is of the scan that is shown."""
+    """Comparison with another surface: it is written among the results, and is no edit of the project."""
 
     changed = Signal()
 
@@ -40,7 +40,7 @@ class InspectComparison(QObject):
 
     @property
     def buttons(self) -> ComparisonButtons:
-        """What can be done."""
+        """Reason for each disabled button, or ""."""
         return comparison_buttons(
             ComparisonFacts(
                 no_surface=self._scan.buttons.measure,
@@ -52,11 +52,11 @@ class InspectComparison(QObject):
 
     @property
     def look(self) -> tuple[object, ...]:
-        """What the colours of the surface hang on."""
+        """All that the colours of the surface depend on."""
         return self.serial, self.significant_only
 
     def compare(self, other: Path) -> None:
-        """Compare the scan with what lies there."""
+        """Compare the scan with the surface of this file."""
         folder = self._bench.model.folder
         if folder is None or self.buttons.compare:
             return
@@ -81,7 +81,7 @@ class InspectComparison(QObject):
         self.changed.emit()
 
     def set_value(self, key: str, value: Any) -> None:
-        """Align in another way ("align"), or over another diameter; what is shown is compared anew."""
+        """Change the alignment ("align") or the diameter; what is shown is compared anew."""
         if value == getattr(self, key):
             return
         setattr(self, key, value)
@@ -90,7 +90,7 @@ class InspectComparison(QObject):
         self.changed.emit()
 
     def show_significant_only(self, only: bool) -> None:
-        """Grey out what may be chance."""
+        """Grey out what may be chance, or not."""
         self.significant_only = only
         self.changed.emit()
 
@@ -100,7 +100,7 @@ class InspectComparison(QObject):
         self.changed.emit()
 
     def take_away(self) -> None:
-        """Show it no more, and take it out of the results."""
+        """Remove the comparison from the view and the results."""
         folder = self._bench.model.folder
         if folder is None or self.buttons.take_away:
             return
@@ -113,7 +113,7 @@ class InspectComparison(QObject):
         )
 
     def forget(self) -> None:
-        """Show none: another scan or another project is looked at."""
+        """Show no comparison: another scan or another project is shown."""
         self.shown, self.other, self.serial = None, None, self.serial + 1
         self.changed.emit()
 

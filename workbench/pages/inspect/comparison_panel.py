@@ -20,7 +20,7 @@ from workbench.views.lists.value_rows import ValueRows
 
 
 class ComparisonPanel(QWidget):
-    """Wear, before and after, or the part and what it should be."""
+    """Panel of the comparison: wear, before and after, or the part and its nominal surface."""
 
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -61,7 +61,7 @@ class ComparisonPanel(QWidget):
         self.away.clicked.connect(lambda: self._comparison.take_away())
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         comparison = self._comparison
         can, shown = comparison.buttons, comparison.shown
         enable(self.file, can.compare, tr("Compare the scan with a PLY, STL, STEP or E57 file in mm"))

@@ -23,7 +23,7 @@ SECTION = "section"
 
 
 class InspectCut(QObject):
-    """The plane stands in the frame of the view; nothing of it is an edit before `keep`."""
+    """Cutting plane in the frame of the view; it is no edit before `keep`."""
 
     changed = Signal()
 
@@ -42,7 +42,7 @@ class InspectCut(QObject):
 
     @property
     def plane(self) -> CutPlane | None:
-        """The plane, if one is shown; it keeps its coordinate as long as the frame is of one kind."""
+        """Cutting plane, if one is shown; it keeps its coordinate as long as the frame is of one kind."""
         view = self._scan.view
         if not self._on or view is None or not len(view):
             return None
@@ -62,22 +62,22 @@ class InspectCut(QObject):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """From where to where it can be moved, in mm."""
+        """Range in mm within which it can be moved."""
         along = self._coordinates[:, self._axis]
         return float(along.min()), float(along.max())
 
     def corners(self) -> Array:
-        """Of the plane, (4, 3) in mm in the camera frame."""
+        """Return the corners of the plane, (4, 3) in mm in the camera frame."""
         assert self.plane is not None
         return self.plane.corners(self._coordinates)
 
     def profile(self, count: int) -> ShownProfile:
-        """What it cuts of the first `count` points."""
+        """Compute the profile that it cuts of the first `count` points."""
         assert self.plane is not None
         return self.plane.profile(self._coordinates[:count])
 
     def count_shown(self, points: Array, triangles: NDArray[np.integer] | None = None) -> int:
-        """How many of `points` (N, 3), in mm in the camera frame, it does not hide.
+        """Count the `points` (N, 3), in mm in the camera frame, that it does not hide.
 
         With `triangles`, indices (M, 3) of points: how many of these it does not hide whole.
         """
@@ -89,7 +89,7 @@ class InspectCut(QObject):
         return int(np.count_nonzero(seen if triangles is None else seen[triangles].any(axis=1)))
 
     def show(self, shown: bool) -> None:
-        """Lay it through the part, or take it away."""
+        """Show the plane through the part, or remove it."""
         if shown != self._on:
             self._on, self._plane = shown, None
             self.turned_deg = self.tilted_deg = 0.0
@@ -97,27 +97,27 @@ class InspectCut(QObject):
 
     @property
     def clip(self) -> tuple[Array, Array] | None:
-        """A place (3,) on the plane and the unit vector (3,) towards what it hides; None if it hides nothing."""
+        """Place (3,) on the plane and unit vector (3,) towards the hidden side; None if it hides nothing."""
         plane = self.plane
         if plane is None or not self.hides:
             return None
         return self.corners()[0], self.hides * plane.normal
 
     def hide(self, side: int) -> None:
-        """Hide what lies to one side of it, or nothing; see `hides`."""
+        """Hide everything on one side of it, or nothing; see `hides`."""
         if side != self.hides:
             self.hides = side
             self.changed.emit()
 
     def square_to(self, axis: int) -> None:
-        """Lay it square to another axis, through the middle of the part."""
+        """Turn the plane normal to another axis, through the middle of the part."""
         if axis != self._axis:
             self._axis, self._plane = axis, None
             self.turned_deg = self.tilted_deg = 0.0
             self.changed.emit()
 
     def turn_to(self, turned_deg: float, tilted_deg: float) -> None:
-        """Stand it at an angle, about its own middle; see `turned_for`."""
+        """Turn the plane to angles about its own middle; see `turned_for`."""
         if self.plane is None or (turned_deg, tilted_deg) == (self.turned_deg, self.tilted_deg):
             return
         middle = self.corners().mean(axis=0)
@@ -127,14 +127,14 @@ class InspectCut(QObject):
         self.changed.emit()
 
     def move_to(self, at_mm: float) -> None:
-        """Move it, as far as the points reach."""
+        """Move the plane to a coordinate, as far as the points reach."""
         plane = self.plane
         if plane is not None:
             self._plane = replace(plane, at_mm=self._within_reach(at_mm))
             self.changed.emit()
 
     def pull(self, by_mm: float) -> None:
-        """Move it along its axis."""
+        """Move the plane along its axis."""
         if self.plane is not None:
             self.move_to(self.plane.at_mm + by_mm)
 
@@ -144,7 +144,7 @@ class InspectCut(QObject):
 
     @property
     def cannot_keep(self) -> str:
-        """Why it cannot become a feature now, or ""."""
+        """Reason why it cannot become a feature now, or ""."""
         if self._axis >= UPRIGHT:
             return tr("A cut square to z is to look at: cross-sections that are measured stand upright.")
         if self.tilted_deg:
@@ -154,7 +154,7 @@ class InspectCut(QObject):
         return ""
 
     def keep(self) -> None:
-        """Put it into the plan as a cross-section; one edit, undoable."""
+        """Add it to the plan as a cross-section; one edit, undoable."""
         plane, features = self.plane, self._features
         if plane is not None and not self.cannot_keep:
             section = plane.section(features.pose_camera_part)

@@ -28,7 +28,7 @@ SHARES = 3, 2
 
 
 class CutPanel(QWidget):
-    """Direction and place of the plane in numbers; its profile stands at the view of the surface, in `views`.
+    """Panel with direction and place of the plane in numbers; its profile is at the view of the surface, in `views`.
 
     It stands below the surface, or beside it where both would be too low (`put_beside`).
     """
@@ -78,20 +78,20 @@ class CutPanel(QWidget):
 
     @cached_property
     def chart(self) -> LineChart:
-        """The profile; made when there first is one, so that the window's start does not wait for it."""
+        """Chart of the profile; made when there first is one, so that the window's start does not wait for it."""
         chart = LineChart()
         self.views.addWidget(chart, SHARES[1])
         self._limit(chart)
         return chart
 
     def show_all(self, shown: bool) -> None:
-        """Show or hide it with its profile."""
+        """Show or hide the panel with the profile."""
         self.setVisible(shown)
         if "chart" in self.__dict__:
             self.chart.setVisible(shown)
 
     def put_beside(self, beside: bool) -> None:
-        """The profile beside the surface, or below it."""
+        """Put the profile beside the surface, or below it."""
         direction = QBoxLayout.Direction.LeftToRight if beside else QBoxLayout.Direction.TopToBottom
         if direction != self.views.direction():
             self.views.setDirection(direction)
@@ -105,7 +105,7 @@ class CutPanel(QWidget):
         chart.setMaximumHeight(CHART_PX if below else ANY_HEIGHT)
 
     def refresh(self, count: int) -> None:
-        """Show the plane and what it cuts of the first `count` points."""
+        """Show the plane and its profile of the first `count` points."""
         cut, plane = self._cut, self._cut.plane
         if plane is None:
             return
@@ -132,7 +132,7 @@ class CutPanel(QWidget):
         self.show_keep()
 
     def show_keep(self) -> None:
-        """Whether it can be kept, and why not."""
+        """Enable the button that keeps the plane, or show why it cannot be kept."""
         why_not = self._cut.cannot_keep
         enable(self.keep, why_not, tr("Measure this cut as a feature of the plan; undoable"))
 

@@ -23,7 +23,7 @@ class _Drawn:
 
 
 class InspectDrawn:
-    """The points drawn round, by the feature ("" of the thickness) and the region's name.
+    """Points drawn round, by the feature ("" of the thickness) and the region's name.
 
     They stay while their outline is worked out, and after that until there is a result of the region, or the feature
     has another one. `thickness_measured` says whether the thickness shown is of the regions in force.
@@ -41,25 +41,25 @@ class InspectDrawn:
         self._all: dict[tuple[str, str], _Drawn] = {}
 
     def begin(self, feature: str, name: str, places: Array) -> None:
-        """Keep the points that were drawn round; their outline is not known yet."""
+        """Store the points that were drawn round; their outline is not known yet."""
         self._all[feature, name] = _Drawn(places)
 
     def outlined(self, feature: str, name: str, corners: Array) -> None:
-        """Keep the outline that became the region."""
+        """Store the outline that became the region."""
         if (feature, name) in self._all:
             self._all[feature, name] = _Drawn(self._all[feature, name].places, corners)
 
     def end_outlining(self) -> None:
-        """What has no outline by now gets none."""
+        """Drop the points that have no outline by now."""
         self._all = {key: one for key, one in self._all.items() if one.corners is not None}
 
     def forget(self) -> None:
-        """Another scan is shown."""
+        """Forget all: another scan is shown."""
         self._all = {}
 
     @property
     def places(self) -> tuple[Array, ...]:
-        """The points to be marked now, of each region."""
+        """Points to be marked now, of each region."""
         self._all = {key: one for key, one in self._all.items() if self._counts(*key, one)}
         return tuple(one.places for (feature, _), one in self._all.items() if feature in ("", self._features.chosen))
 

@@ -23,7 +23,7 @@ NUMBERS = ("nominal_mm", "tolerance_mm")
 
 
 class InspectFaces(QObject):
-    """Nominal value and tolerance go together, and so do the two regions.
+    """Faces of the thickness: nominal value and tolerance are set together, and so are the two regions.
 
     What has been entered of a pair whose other half is missing is kept here, and put into the project with it.
     """
@@ -38,17 +38,17 @@ class InspectFaces(QObject):
 
     @property
     def spec(self) -> GaugeSpec:
-        """What the project says."""
+        """Specification of the gauge in the project."""
         return self._model.project.rig.gauge or GaugeSpec()
 
     # ---- nominal value and tolerance
 
     def values(self) -> dict[str, float | None]:
-        """Nominal value and tolerance in mm as they stand in the form."""
+        """Return nominal value and tolerance in mm as they are in the form."""
         return {key: getattr(self.spec, key) for key in NUMBERS} | self._numbers
 
     def complaint(self, key: str) -> str:
-        """What is missing beside a number that was entered, or ""."""
+        """Say what is missing beside a number that was entered, or ""."""
         values = self.values()
         other = values["tolerance_mm" if key == "nominal_mm" else "nominal_mm"]
         if values[key] is not None or other is None:
@@ -77,11 +77,11 @@ class InspectFaces(QObject):
 
     @property
     def own(self) -> bool:
-        """Whether the faces are measured in regions of one's own."""
+        """Whether the faces are measured in regions drawn by the user."""
         return self.spec.upper_polygon_px is not None
 
     def region(self, face: str) -> Array | None:
-        """The region (n, 2) in pixels of a face, "upper" or "lower"; None: it is found automatically."""
+        """Return the region (n, 2) in px of a face, "upper" or "lower"; None: it is found automatically."""
         drawn: Array | None = getattr(self.spec, f"{face}_polygon_px")
         return self._regions.get(face, drawn)
 
@@ -110,20 +110,20 @@ class InspectFaces(QObject):
         self._put_regions({face: polygon, other: beside}, words[face])
 
     def exchange(self) -> None:
-        """Let the upper region be the lower one and the other way round; undoable."""
+        """Exchange the upper and the lower region; undoable."""
         upper, lower = self.spec.upper_polygon_px, self.spec.lower_polygon_px
         if upper is not None and lower is not None:
             self._put_regions({"upper": lower, "lower": upper}, tr("exchange the faces"))
 
     def take_found(self) -> None:
-        """Make the outlines of the faces that were found regions of one's own, to be changed; undoable."""
+        """Make regions of the outlines of the faces found, to be changed; undoable."""
         found = {face: self._found(face) for face in FACES}
         if all(outline is not None for outline in found.values()):
             self._put_regions(found, tr("take the faces found as regions"))
 
     @property
     def candidates(self) -> tuple[PairCandidate, ...]:
-        """The pairs that could be meant and can be confirmed, the measured one first; () where there is no choice."""
+        """Possible pairs of faces that can be confirmed, the measured one first; () where there is no choice."""
         gauge = self._scan.gauge
         if gauge is None or self.own:
             return ()
@@ -131,7 +131,7 @@ class InspectFaces(QObject):
 
     @property
     def next_pair(self) -> NextPair | None:
-        """The next best of several pairs that could be meant, as it is drawn; None where there is no choice."""
+        """Next best possible pair, as it is drawn; None where there is no choice."""
         view = self._scan.view
         return None if view is None or self.own else view.next_pair
 
@@ -144,19 +144,19 @@ class InspectFaces(QObject):
         self._put_regions(outlines, tr("confirm the faces {mm} mm apart", mm=number(candidate.thickness_mm, ".1f")))
 
     def find_automatically(self) -> None:
-        """Let the faces be found again; undoable."""
+        """Find the faces automatically again; undoable."""
         self._regions = {}
         self._put_regions(dict.fromkeys(FACES), tr("find the faces automatically"))
         self.changed.emit()
 
     @property
     def buttons(self) -> FacesButtons:
-        """What can be done with the regions."""
+        """Reason for each disabled button of the regions, or ""."""
         found = self._found("upper") is not None
         return faces_buttons(FacesFacts(self._scan.buttons.use, found, self.own, self.missing()))
 
     def missing(self) -> str:
-        """What keeps the thickness from being measured, or ""."""
+        """Say what keeps the thickness from being measured, or ""."""
         if "upper" in self._regions:
             return tr("Draw the lower face too, or let the faces be found automatically.")
         if "lower" in self._regions:
@@ -166,7 +166,7 @@ class InspectFaces(QObject):
     # ---- what happens elsewhere
 
     def follow(self, before: GaugeSpec | None, after: GaugeSpec | None) -> None:
-        """The project changed: what was half entered counts no more where the project says something else now."""
+        """Follow a change of the project: drop half entered values where the project has others now."""
         was, now = before or GaugeSpec(), after or GaugeSpec()
         if any(getattr(was, key) != getattr(now, key) for key in NUMBERS):
             self._numbers = {}
@@ -174,11 +174,11 @@ class InspectFaces(QObject):
             self._regions = {}
 
     def forget_regions(self) -> None:
-        """Another scan is shown: what was half drawn on the last one counts no more."""
+        """Drop half drawn regions: another scan is shown."""
         self._regions = {}
 
     def forget(self) -> None:
-        """Another project is open."""
+        """Forget all: another project is open."""
         self._numbers, self._regions = {}, {}
 
     def _found(self, face: str) -> Array | None:

@@ -38,7 +38,7 @@ STEADY = (Stage.MEASURING, Stage.UNMEASURED, Stage.MEASURED, Stage.OUTDATED)
 
 
 class InspectPage(StepPage):
-    """Look, measure, judge."""
+    """Page of the inspection: look, measure, judge."""
 
     presenter: InspectPresenter
 

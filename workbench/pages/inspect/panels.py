@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 class PartPanel(QWidget):
-    """What is known of the part: material, temperature, layer of spray."""
+    """Panel of the part: material, temperature, layer of spray."""
 
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,7 +76,7 @@ class PartPanel(QWidget):
         in_column(self.form, on=self, spacing=4)
 
     def refresh(self) -> None:
-        """Show what the project says now."""
+        """Show the state of the project."""
         self.form.set_values(self._part.values())
 
     def _number(self, key: str, name: str, allowed: NumberRange, help: str) -> None:
@@ -91,7 +91,7 @@ class PartPanel(QWidget):
 
 
 class FacesPanel(QWidget):
-    """Nominal value and tolerance; which faces, and the tools to draw them."""
+    """Panel of nominal value and tolerance, of the faces, and the tools to draw them."""
 
     draw = Signal(str, str)
     """Face and kind of tool: a region is to be drawn."""
@@ -124,7 +124,7 @@ class FacesPanel(QWidget):
         column.addLayout(row)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         faces = self._presenter.faces
         self.form.set_values(faces.values())
         for key in NUMBERS:
@@ -213,7 +213,7 @@ class FacesPanel(QWidget):
 
 
 class ResultPanel(QWidget):
-    """The thickness with all that belongs to it."""
+    """Panel of the thickness with its details."""
 
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -230,7 +230,7 @@ class ResultPanel(QWidget):
             column.addWidget(widget)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p = self._presenter
         gauge, outdated = p.scan.gauge, p.state.state is not State.DONE
         if gauge is None or (p.scan.serial, outdated) == self._shown:
@@ -254,7 +254,7 @@ class ResultPanel(QWidget):
 
 
 class PicksPanel(QWidget):
-    """Tools to pick points and distances, and the list of them as soon as there are some."""
+    """Panel with tools to pick points and distances, and the list of them as soon as there are some."""
 
     pick = Signal(str)
     """Points ("point") or distances ("distance") are to be picked; "": no more."""
@@ -296,7 +296,7 @@ class PicksPanel(QWidget):
         self.list.selectionModel().currentChanged.connect(lambda: self._show_buttons())
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         picks = self._presenter.picks
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)

@@ -30,24 +30,24 @@ WITH_U: Mapping[str, tuple[str, float]] = {
 
 
 class InspectPart:
-    """Each change is undoable, and kept in the project's rig."""
+    """Part of the project's rig; each change is undoable."""
 
     def __init__(self, model: ProjectModel) -> None:
         self._model = model
 
     @property
     def part(self) -> Part:
-        """What the project says."""
+        """Part as stated in the project."""
         return self._model.project.rig.part
 
     def values(self) -> dict[str, Any]:
-        """The fields as they stand in the form; None where nothing is stated."""
+        """Return the fields as they are in the form; None where nothing is stated."""
         pairs = {key: getattr(self.part, key) for key in WITH_U}
         pairs |= {u: getattr(self.part, u) for u, _ in WITH_U.values()}
         return {"material": self.part.material or "", **pairs}
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change one field; an estimate and its uncertainty come and go together."""
+        """Change one field; an estimate and its uncertainty are set and cleared together."""
         if key == "material":
             changed: dict[str, Any] = {key: value or None}
         else:

@@ -17,7 +17,7 @@ Mode = Literal["", "point", "distance"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pick:
-    """One measured point: place (3,) in mm, σ of its depth in mm, the frame and pixel it was seen at."""
+    """Picked point: place (3,) in mm, σ of its depth in mm, the frame and pixel it was seen at."""
 
     name: str
     point: int
@@ -29,7 +29,7 @@ class Pick:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Span:
-    """The distance of two picked points."""
+    """Distance of two picked points."""
 
     name: str
     a: Pick
@@ -38,7 +38,7 @@ class Span:
 
 
 class InspectPicks(QObject):
-    """The list of picked points and distances."""
+    """List of picked points and distances."""
 
     changed = Signal()
 
@@ -51,7 +51,7 @@ class InspectPicks(QObject):
         self._numbers = {"P": 0, "D": 0}
 
     def start(self, mode: Mode) -> None:
-        """From now on a click in 3D picks a point, or an end of a distance; "" ends it."""
+        """Start picking a point, or an end of a distance, by a click in 3D; "" ends it."""
         if mode != self.mode:
             self.mode, self.first = mode, None
             self.changed.emit()
@@ -61,7 +61,7 @@ class InspectPicks(QObject):
         self.start("")
 
     def pick(self, point: int) -> None:
-        """A point of the view was clicked."""
+        """Pick the point of the view that was clicked."""
         view = self._scan.view
         if view is None or not self.mode or not 0 <= point < len(view):
             return
@@ -79,19 +79,19 @@ class InspectPicks(QObject):
         self.changed.emit()
 
     def remove(self, name: str) -> None:
-        """Take a point or a distance off the list."""
+        """Remove a point or a distance from the list."""
         self.items = [item for item in self.items if item.name != name]
         self.changed.emit()
 
     def clear(self) -> None:
-        """Take all off the list."""
+        """Remove all from the list."""
         if self.items or self.first is not None or self.mode:
             self.items, self.first, self.mode = [], None, ""
             self._numbers = {"P": 0, "D": 0}
             self.changed.emit()
 
     def hint(self) -> str:
-        """What the next click does."""
+        """Describe what the next click does."""
         if self.mode == "point":
             return tr("Click points of the surface; each is added to the list.")
         if self.mode == "distance":

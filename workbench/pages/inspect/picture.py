@@ -27,7 +27,7 @@ COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
 
 
 class PictureTab(QWidget):
-    """A picture; regions are drawn and dragged on it."""
+    """Tab with a picture on which regions are drawn and dragged."""
 
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -51,7 +51,7 @@ class PictureTab(QWidget):
         presenter.picture_ready.connect(self._show_picture)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p, view = self._presenter, self._presenter.scan.view
         self.pictures.setEnabled(view is not None)
         if view is None:
@@ -66,7 +66,7 @@ class PictureTab(QWidget):
         self.line.setText(self._words())
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Let the user draw a face."""
+        """Start drawing a face."""
         if kind == "polygon":
             self.image.start_polygon(face)
         else:

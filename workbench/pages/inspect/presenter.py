@@ -49,7 +49,7 @@ MOST_POINTS_SENT = 100_000
 
 
 class InspectPresenter(StepPresenter):
-    """The scan as it lies among the results, its thickness, and everything one does with the two."""
+    """Presenter of the scan among the results, its thickness, and everything one does with the two."""
 
     step = "inspect"
 
@@ -101,7 +101,7 @@ class InspectPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """How far the inspection is."""
+        """Stage of the inspection."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -123,7 +123,7 @@ class InspectPresenter(StepPresenter):
         return tr("Scan the part first.") if "scan" not in self.model.results else ""
 
     def warning(self) -> str:
-        """What the report will lack if one goes on now, or ""."""
+        """Say what the report will lack if one goes on now, or ""."""
         return {
             Stage.UNMEASURED: tr("Measure the thickness, or go on without one: then the report has none."),
             Stage.FAILED: tr("Without a thickness the report shows the surface only."),
@@ -134,12 +134,12 @@ class InspectPresenter(StepPresenter):
 
     @property
     def problem_of_measuring(self) -> str:
-        """Why the last attempt gave no thickness, or ""."""
+        """Reason why the last attempt gave no thickness, or ""."""
         return self._unmeasurable
 
     @property
     def can_measure(self) -> str:
-        """Why the thickness cannot be measured now, or ""."""
+        """Reason why the thickness cannot be measured now, or ""."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.NO_SCAN: tr("Scan the part first."),
@@ -187,18 +187,18 @@ class InspectPresenter(StepPresenter):
 
     @property
     def part_frame(self) -> ViewFrame | None:
-        """The part's own frame, if it is known."""
+        """Part's own frame, if it is known."""
         gauge = self.scan.gauge
         return part_frame(self.features.pose_camera_part, None if gauge is None else gauge.lower.plane)
 
     @property
     def frame(self) -> ViewFrame:
-        """The frame the surface is shown in."""
+        """Frame in which the surface is shown."""
         return shown_frame(self.part_frame, wanted=self.bench.settings.part_frame)
 
     @property
     def results(self) -> ResultList | None:
-        """All results on the part; None while it is not known what the features give."""
+        """Results on the part; None while those of the features are not known."""
         shown = self.features.shown
         if shown is None:
             return None if "inspection" in self.model.results else ResultList.of(self.scan.gauge)
@@ -206,20 +206,20 @@ class InspectPresenter(StepPresenter):
         return ResultList.of(self.scan.gauge, rows, unmeasured=shown.unmeasured)
 
     def points_shown(self) -> int:
-        """How many of the points are shown."""
+        """Count the points shown."""
         if self.scan.view is None:
             return 0
         return len(self.scan.view) if self.clip_mm is None else self.scan.view.up_to(self.clip_mm)
 
     def triangles_shown(self) -> int:
-        """How many of the mesh's triangles are shown."""
+        """Count the triangles of the mesh shown."""
         mesh = self.scan.view.mesh if self.scan.view is not None else None
         if mesh is None:
             return 0
         return len(mesh.triangles) if self.clip_mm is None else mesh.up_to(self.clip_mm)
 
     def clip(self, sigma_mm: float | None) -> None:
-        """Show the points with no larger σ; None: all. Nothing that is measured changes."""
+        """Show only the points with no larger σ; None: all. Nothing that is measured changes."""
         if sigma_mm != self.clip_mm:
             self.clip_mm = sigma_mm
             self.changed.emit()
@@ -233,7 +233,7 @@ class InspectPresenter(StepPresenter):
         self.changed.emit()
 
     def read_picture(self) -> None:
-        """Read the recorded picture that is shown, if it is one; `picture_ready` brings it."""
+        """Read the recorded picture that is shown, if it is one; `picture_ready` delivers it."""
         name, folder = self.picture, self.model.folder
         if name == RELIEF or folder is None:
             return
@@ -256,36 +256,36 @@ class InspectPresenter(StepPresenter):
     # ---- points and faces clicked in 3D
 
     def start_picking(self, mode: Mode) -> None:
-        """From now on a click in 3D picks a point, or an end of a distance; "" ends it."""
+        """Start picking a point, or an end of a distance, by a click in 3D; "" ends it."""
         self.clicked.stop()
         self.picks.start(mode)
 
     def start_clicking(self, mode: ClickMode, target: Target | None = None) -> None:
-        """From now on a click in 3D proposes a face, or two a step; "" ends it."""
+        """Start to propose a face by a click in 3D, or a step by two; "" ends it."""
         self.picks.stop()
         self.clicked.start(mode, target)
 
     def click_region(self, name: str) -> None:
-        """From now on a face that is clicked is proposed for the region of the chosen feature called so."""
+        """Start to propose a clicked face for this region of the chosen feature."""
         if self.feature.spec is not None:
             self.start_clicking("face", Target(self.feature.spec.name, self.feature.place_of(name)))
 
     def click(self, point: int) -> None:
-        """A point of the view was clicked."""
+        """Handle a click on a point of the view."""
         if self.clicked.mode:
             self.clicked.click(point)
         else:
             self.picks.pick(point)
 
     def end_picking(self) -> None:
-        """Clicks in 3D mean nothing any more."""
+        """End the actions of clicks in 3D."""
         self.picks.stop()
         self.clicked.stop()
 
     # ---- regions chosen in 3D
 
     def outline(self, face: str, chosen: NDArray[np.bool_]) -> None:
-        """Make the chosen ones of the points shown the region of a face: the outline of the plane they hold."""
+        """Make the chosen points the region of a face: the outline of the plane among them."""
         folder, view = self.model.folder, self.scan.view
         if folder is None or view is None:
             return
@@ -318,7 +318,7 @@ class InspectPresenter(StepPresenter):
         self.changed.emit()
 
     def set_region(self, name: str, corners: ArrayLike) -> None:
-        """Take a polygon of the picture for the region of that name: of a face, or of the chosen feature."""
+        """Use a polygon of the picture for the region of that name: of a face, or of the chosen feature."""
         if name in FACES:
             self.faces.set_region(name, corners)
         elif name == LINE:

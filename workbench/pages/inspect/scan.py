@@ -24,7 +24,7 @@ Key = tuple[object, ...]
 
 
 class InspectScan(QObject):
-    """`view` is the scan shown, with `serial` to tell it from the one before; `problem` is why there is none."""
+    """Scan that is shown, `view`, with `serial` to tell it from the one before; `problem` is why there is none."""
 
     changed = Signal()
     """Another scan or another thickness is shown, or none."""
@@ -53,12 +53,12 @@ class InspectScan(QObject):
 
     @property
     def gauge(self) -> GaugeResult | None:
-        """The thickness that is shown."""
+        """Thickness that is shown."""
         return self.view.gauge if self.view is not None else None
 
     @property
     def buttons(self) -> SurfaceButtons:
-        """What can be done with what is shown."""
+        """Reason for each disabled button of the view, or ""."""
         view = self.view
         return surface_buttons(
             SurfaceFacts(
@@ -76,17 +76,17 @@ class InspectScan(QObject):
 
     @property
     def is_thickness_old(self) -> bool:
-        """Whether the thickness shown is not what the project would give now."""
+        """Whether the thickness shown differs from what the project would give now."""
         return self.stale or self._model.states["inspect"].state is not State.DONE
 
     @property
     def recording(self) -> str:
-        """The recording the scan was measured from, as the project names it."""
+        """Recording the scan was measured from, as the project names it."""
         done = self._model.results.get("scan")
         return done.rests_on.get("recording", "") if done is not None else ""
 
     def as_scanned(self) -> Project:
-        """The project with the recording that the scan among the results was measured from."""
+        """Return the project with the recording that the scan among the results was measured from."""
         project = self._model.project
         return replace(project, sources=replace(project.sources, scan=self.recording))
 
@@ -133,7 +133,7 @@ class InspectScan(QObject):
         )
 
     def forget(self) -> None:
-        """Show none."""
+        """Show no scan."""
         self.view, self.problem, self.is_new = None, "", True
         self._shown = self._asked = ()
         self.changed.emit()

@@ -13,7 +13,7 @@ from workbench.language import tr
 
 
 class Stage(StrEnum):
-    """How far the inspection is."""
+    """Stage of the inspection."""
 
     NO_SCAN = "no scan"
     READING = "reading"
@@ -26,7 +26,7 @@ class Stage(StrEnum):
 
 
 class WhyNot(StrEnum):
-    """Why the thickness cannot be measured now; nothing: it can."""
+    """Reason why the thickness cannot be measured now; "": it can."""
 
     NOTHING = ""
     NO_SCAN = "no scan"
@@ -37,7 +37,7 @@ class WhyNot(StrEnum):
 
 
 class Facts(NamedTuple):
-    """What the stage rests on."""
+    """Facts from which the stage follows."""
 
     scan: bool
     """There is a scan among the results."""
@@ -60,7 +60,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """How far it is."""
+    """Derive the stage from the facts."""
     if facts.measuring:
         return Stage.MEASURING
     if not facts.scan:
@@ -77,7 +77,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def why_not_measure(facts: Facts) -> WhyNot:
-    """Whether the thickness can be measured."""
+    """Give the reason why the thickness cannot be measured."""
     if not facts.scan:
         return WhyNot.NO_SCAN
     if facts.unreadable:
@@ -91,7 +91,7 @@ def why_not_measure(facts: Facts) -> WhyNot:
 
 @dataclass(frozen=True, slots=True)
 class SurfaceFacts:
-    """What showing the surface, and drawing and picking on it, rest on."""
+    """Facts from which the buttons of showing the surface, and drawing and picking on it, follow."""
 
     scan: bool
     """There is a scan among the results."""
@@ -103,7 +103,7 @@ class SurfaceFacts:
 
 
 class SurfaceButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     use: str
     """Show the points; draw, pick and click on them."""
@@ -114,7 +114,7 @@ class SurfaceButtons(NamedTuple):
 
 
 def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
-    """What can be done with the surface."""
+    """Derive from the facts why each button of the surface is disabled."""
     if facts.shown:
         return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."), "")
     none = tr("The scan cannot be read.") if facts.unreadable else "" if facts.scan else tr("Scan the part first.")
@@ -124,7 +124,7 @@ def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
 
 @dataclass(frozen=True, slots=True)
 class FacesFacts:
-    """What the regions of the two faces rest on."""
+    """Facts from which the buttons of the faces' regions follow."""
 
     no_surface: str
     """Why nothing can be drawn."""
@@ -137,7 +137,7 @@ class FacesFacts:
 
 
 class FacesButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     draw: str
     take_found: str
@@ -146,7 +146,7 @@ class FacesButtons(NamedTuple):
 
 
 def faces_buttons(facts: FacesFacts) -> FacesButtons:
-    """What can be done with the regions."""
+    """Derive from the facts why each button of the regions is disabled."""
     if facts.own:
         taken = tr("The faces are regions of your own already: drag their corners in the picture.")
         return FacesButtons(facts.no_surface, taken, "", "")
@@ -161,7 +161,7 @@ def faces_buttons(facts: FacesFacts) -> FacesButtons:
 
 @dataclass(frozen=True, slots=True)
 class PicksFacts:
-    """What points and distances rest on."""
+    """Facts from which the buttons of points and distances follow."""
 
     no_surface: str
     """Why nothing can be picked."""
@@ -172,7 +172,7 @@ class PicksFacts:
 
 
 class PicksButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     pick: str
     remove: str
@@ -180,7 +180,7 @@ class PicksButtons(NamedTuple):
 
 
 def picks_buttons(facts: PicksFacts) -> PicksButtons:
-    """What can be done with points and distances."""
+    """Derive from the facts why each button of points and distances is disabled."""
     none = "" if facts.some else tr("Nothing is picked yet.")
     choose = "" if facts.chosen else tr("Choose a point or a distance in the list first.")
     return PicksButtons(facts.no_surface, none or choose, none)
@@ -188,7 +188,7 @@ def picks_buttons(facts: PicksFacts) -> PicksButtons:
 
 @dataclass(frozen=True, slots=True)
 class ComparisonFacts:
-    """What a comparison with another surface rests on."""
+    """Facts from which the buttons of the comparison follow."""
 
     no_surface: str
     """Why there is no scan to compare."""
@@ -200,7 +200,7 @@ class ComparisonFacts:
 
 
 class ComparisonButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     compare: str
     take_away: str
@@ -209,7 +209,7 @@ class ComparisonButtons(NamedTuple):
 
 
 def comparison_buttons(facts: ComparisonFacts) -> ComparisonButtons:
-    """What can be done with another surface."""
+    """Derive from the facts why each button of the comparison is disabled."""
     busy = tr("The surfaces are being compared.") if facts.running else ""
     none = "" if facts.shown else tr("Compare with another surface first.")
     return ComparisonButtons(

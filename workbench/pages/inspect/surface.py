@@ -95,7 +95,7 @@ DRAW_WITHIN_MS = 60
 
 
 class SurfaceTab(QWidget):
-    """The 3D view with its choices above it and a line of words below."""
+    """Tab with the 3D view, its choices above it and a line of words below."""
 
     notice = Signal(str)
 
@@ -170,7 +170,7 @@ class SurfaceTab(QWidget):
         presenter.comparison.made.connect(self._show_compared)
 
     def show_place(self, name: str) -> None:
-        """Bring what a feature, or the gauge's thickness, was measured on to the middle of the view."""
+        """Bring the points of a feature, or of the thickness, to the middle of the view."""
         place = self.callouts.place_of(name)
         if place is not None:
             self.scene.look_at(place)
@@ -183,7 +183,7 @@ class SurfaceTab(QWidget):
         self.choices.choose_colour("faces")
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         self.choices.show_compared("" if p.comparison.shown is not None else p.comparison.buttons.look)
@@ -215,16 +215,16 @@ class SurfaceTab(QWidget):
 
     @property
     def shape(self) -> Shape:
-        """What is shown of the surface."""
+        """Shape shown: points, mesh or both."""
         return self.choices.shape
 
     @property
     def colour(self) -> str:
-        """What colours it."""
+        """Kind of colours, as `SurfaceChoices.colour`."""
         return self.choices.colour
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Let the user draw round the points of a face."""
+        """Start drawing round the points of a face."""
         self._presenter.end_picking()
         if kind == "polygon":
             self.scene.start_polygon()

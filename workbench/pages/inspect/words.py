@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 
 def thickness(gauge: GaugeResult) -> str:
-    """'50.008 mm ± 0.027 mm (k = 2)'."""
+    """Write a thickness with its U: '50.008 mm ± 0.027 mm (k = 2)'."""
     return thickness_line(gauge, wording())
 
 
 def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
-    """What is decided on a thickness, or on the part by all results; "" for nothing."""
+    """Return the verdict on a thickness, or on the part by all results; "" for none."""
     kinds: dict[str, VerdictKind] = {
         "conforming": "conforming",
         "not conforming": "not conforming",
@@ -38,7 +38,7 @@ def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
 
 
 class RepeatRow(NamedTuple):
-    """A repeat in the list, in words."""
+    """Row of a repeat in the list, in words."""
 
     scan: str
     thickness: str
@@ -49,7 +49,7 @@ class RepeatRow(NamedTuple):
 
 
 def repeat_row(repeat: Repeat) -> RepeatRow:
-    """A repeat as the list shows it."""
+    """Make the row of a repeat in the list."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm, wording())
     return RepeatRow(
         scan=scan_name(repeat.scan),
@@ -61,7 +61,7 @@ def repeat_row(repeat: Repeat) -> RepeatRow:
 
 
 def repeats_tsv(repeats: tuple[Repeat, ...], *told: Iterable[Fact]) -> str:
-    """The series as text with tabs, and what is `told` of it, all digits kept, for a spreadsheet."""
+    """Write the series as text with tabs, with the facts `told` of it, all digits kept, for a spreadsheet."""
     lines = [[tr("scan"), tr("thickness [mm]"), "U [mm]", "k", tr("calibration"), tr("measured at")]]
     lines += [
         [
@@ -91,18 +91,18 @@ def _in_full(fact: Fact) -> str:
 
 
 def short_id(calibration_id: str) -> str:
-    """The beginnings of the two ids, enough to tell calibrations apart in a table."""
+    """Shorten both ids, long enough to tell calibrations apart in a table."""
     return "-".join(part[:6] for part in calibration_id.split("-"))
 
 
 def scan_name(stored: str) -> str:
-    """How a recording is called: its folder, with the one above where that alone says nothing."""
+    """Return the name of a recording: its folder, with the one above where its own is ambiguous."""
     path = PurePosixPath(stored)
     return f"{path.parent.name}/{path.name}" if path.name == "scan" and path.parent.name else path.name
 
 
 def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
-    """Where a picked point is in a frame, and where it was seen."""
+    """Write where a picked point is in a frame, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
     x, y, z = (wording().fixed(float(value), decimals) for value in frame.coordinates(pick.place))
     place = tr("{name}   x {x}   y {y}   z {z} mm", name=pick.name, x=x, y=y, z=z)
@@ -118,7 +118,7 @@ def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
 
 
 def span_lines(span: Span, frame: ViewFrame) -> tuple[str, str]:
-    """A distance with its standard uncertainty, and its ends in a frame."""
+    """Write a distance with its standard uncertainty, and its ends in a frame."""
     text = tr("{name}   {value} mm, u = {u} mm", name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
@@ -128,7 +128,7 @@ def span_lines(span: Span, frame: ViewFrame) -> tuple[str, str]:
 
 
 def span_label(span: Span) -> str:
-    """What stands at the dimension line."""
+    """Write the text of the dimension line."""
     return tr("{name}: {value} mm (u = {u} mm)", name=span.name, **_span(span))
 
 

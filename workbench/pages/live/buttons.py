@@ -10,7 +10,7 @@ from workbench.language import tr
 
 @dataclass(frozen=True, slots=True)
 class LiveFacts:
-    """What they rest on."""
+    """Facts from which the buttons follow."""
 
     running: bool
     """From start until the source is closed."""
@@ -22,7 +22,7 @@ class LiveFacts:
 
 
 class LiveButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     start: str
     """Start; Stop while it runs."""
@@ -31,7 +31,7 @@ class LiveButtons(NamedTuple):
 
 
 def live_buttons(facts: LiveFacts) -> LiveButtons:
-    """What can be done."""
+    """Derive from the facts why each button is disabled."""
     if not facts.running:
         return LiveButtons(facts.cannot_start, tr("Start the live source first."))
     if facts.stopping:

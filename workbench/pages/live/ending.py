@@ -19,7 +19,7 @@ from workbench.work import jobs
 
 
 class LiveEnding(QObject):
-    """Finds a recording its folder, notes it in case the program crashes, and hands it to the project at the end."""
+    """Finisher of recordings: it finds a folder, notes it in case of a crash, and adds it to the project at the end."""
 
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -28,7 +28,7 @@ class LiveEnding(QObject):
         self.folder: Path | None = None
 
     def begin(self, project: Path, folder: Path) -> None:
-        """A recording into `folder` begins.
+        """Note that a recording into `folder` begins.
 
         Raises
         ------
@@ -39,7 +39,7 @@ class LiveEnding(QObject):
         self.project_folder, self.folder = project, folder
 
     def hand_over(self, ended: LiveEnded, *, adding: bool, then: Callable[[], None]) -> None:
-        """Make what was recorded the step's source, `adding` it to the one before; `then` is called at the end."""
+        """Make the recording the step's source, `adding` it to the one before; `then` is called at the end."""
 
         def take(*, keep_left_out: bool = False) -> None:
             put_source(self._model, self._step, ended.folder, self._label(), keep_left_out=keep_left_out)
@@ -85,6 +85,6 @@ class LiveEnding(QObject):
 
 
 def calibrated_s(results: Mapping[str, Done]) -> float | None:
-    """When the older of the two calibrations was made, in s since 1970; None if one is missing."""
+    """Return the time of the older of the two calibrations, in s since 1970; None if one is missing."""
     both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
     return min(both) if len(both) == 2 else None

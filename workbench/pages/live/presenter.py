@@ -76,7 +76,7 @@ TWICE_MS = 250
 
 
 class LivePresenter(QObject):
-    """Starts, steers and ends the live recordings of one step.
+    """Presenter of the live recordings of one step.
 
     `calibration`, `check`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan
     when a recording starts, what their last check said, why none can start now ("" if it can), the views that count in
@@ -163,23 +163,23 @@ class LivePresenter(QObject):
 
     @property
     def question(self) -> tuple[str, str]:
-        """What is asked now: sentence and button; two empty texts if nothing is."""
+        """Sentence and button of the present request to the user; two empty texts if there is none."""
         return (text_of(self._ask.sentence), tr(self._ask.button)) if self._ask is not None else ("", "")
 
     def forget(self) -> None:
-        """Nothing is known of a recording that has not begun."""
+        """Forget the last recording."""
         self.name, self.image_size = "", (0, 0)
         self.recorded = self.dropped = 0
         self.rate_hz = 0.0
         self.over()
 
     def over(self) -> None:
-        """Nothing is asked or advised any more; what was counted stays."""
+        """Drop requests and advice; counts stay."""
         self.paused = self.stopping = self.gone = False
         self.advice, self.checks, self._ask = WELL_EXPOSED, (), None
 
     def hear(self, event: LiveEvent) -> None:
-        """Take note of what the recording says."""
+        """Handle an event of the recording."""
         match event:
             case LiveStarted():
                 self.name, self.image_size = event.name, event.image_size
@@ -198,16 +198,16 @@ class LivePresenter(QObject):
 
     @property
     def buttons(self) -> LiveButtons:
-        """Which of its buttons can be pressed."""
+        """Reason for each disabled button, or ""."""
         return live_buttons(LiveFacts(self.running, self.name != "", self.stopping, self.why_not_start))
 
     @property
     def why_not_start(self) -> str:
-        """Why none can be started, apart from one that runs, or ""."""
+        """Reason why none can be started, apart from one that runs, or ""."""
         return self.bench.cannot_write or self.cannot_start()
 
     def state_text(self) -> str:
-        """What goes on, in a few words."""
+        """Describe the present state in a few words."""
         if not self.running:
             return tr("The live source is off.")
         if self.stopping:
@@ -221,7 +221,7 @@ class LivePresenter(QObject):
         return tr("Live: {camera}", camera=self.name)
 
     def counts_text(self) -> str:
-        """Recorded and lost pictures and the rate, with their units."""
+        """Write the numbers of recorded and lost pictures and the rate, with their units."""
         if not self.running:
             return ""
         parts = [self._recorded_text()]
@@ -232,7 +232,7 @@ class LivePresenter(QObject):
         return " · ".join(parts)
 
     def lost_text(self) -> str:
-        """What to do when frames are lost, or "": only a scan needs every frame, and one now and then does no harm."""
+        """Say what to do when frames are lost, or "": only a scan needs every frame, and a rare loss does no harm."""
         total = self.recorded + self.dropped
         if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
             return ""
@@ -269,13 +269,13 @@ class LivePresenter(QObject):
         self.changed.emit()
 
     def get_ready(self) -> None:
-        """A source will soon be wanted: have the process for it ready, and know the simulated scenes."""
+        """Prepare the process for a source that will soon be opened, and compile the simulated scenes."""
         self.bench.live.prepare()
         if self.settings.kind == "simulated" and not self.settings.devices and not self.settings.looking:
             self.settings.look_for_devices()
 
     def start(self, *, stop_other: bool = False) -> None:
-        """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
+        """Open the source and start; if another page's recording runs, ask first (`other_running`)."""
         if self.running or self.model.folder is None or self.cannot_start():
             return
         if why_not := self.bench.cannot_write:
@@ -331,18 +331,18 @@ class LivePresenter(QObject):
 
     @property
     def auto(self) -> bool:
-        """Whether views and poses are taken without being told."""
+        """Whether views and poses are taken automatically."""
         return self._auto
 
     def pause(self, on: bool) -> None:
-        """Record nothing for a while, or go on."""
+        """Pause the recording, or continue."""
         if self.live and on != self.paused:
             self.paused = on
             self._send(Pause() if on else Resume())
             self.changed.emit()
 
     def mark(self) -> None:
-        """Mark the frame that is recorded now."""
+        """Mark the frame that is being recorded."""
         if self.live and not self.paused:
             self._send(Mark())
 
@@ -352,22 +352,22 @@ class LivePresenter(QObject):
             self._send(Capture())
 
     def set_auto(self, on: bool) -> None:
-        """Take views and poses without being told, or no longer; also before a start."""
+        """Take views and poses automatically, or no longer; also before a start."""
         if on != self._auto:
             self._auto = on
             self._send(Auto(on))
             self.changed.emit()
 
     def look_for(self, target: Target) -> None:
-        """Look for another target of the camera's from now on."""
+        """Set another camera target to look for from now on."""
         self._send(LookFor(target))
 
     def discard(self, name: str) -> None:
-        """Put a picture aside that has been taken."""
+        """Discard a picture that has been taken."""
         self._send(Discard(name))
 
     def go_on(self) -> None:
-        """What the one key of a foot switch or presenter means now: answer, else take the picture; of a scan, stop."""
+        """Handle the one key of a foot switch or presenter: answer, else take the picture; of a scan, stop."""
         if self._ask is not None:
             self.answer()
         elif self.step != "scan":
@@ -379,32 +379,32 @@ class LivePresenter(QObject):
 
     @property
     def sound(self) -> bool:
-        """Whether it is heard that a picture was taken or refused."""
+        """Whether a sound is played when a picture is taken or refused."""
         return self.bench.settings.text(SOUND, "on") == "on"
 
     def set_sound(self, on: bool) -> None:
-        """Have it heard that a picture was taken or refused, or not."""
+        """Play a sound when a picture is taken or refused, or not."""
         self.bench.settings.keep_text(SOUND, "on" if on else "off")
         self.changed.emit()
 
     def take_advice(self) -> None:
-        """Tell the source how to expose the stripes better, as was advised."""
+        """Change the source's exposure as advised."""
         if self.advice.settings is not None:
             settings, self.advice = self.advice.settings, WELL_EXPOSED
             self.settings.take(settings)
 
     def answer(self) -> None:
-        """The button of what was asked has been pressed."""
+        """Send the answer to the request: its button has been pressed."""
         if self._ask is not None:
             self._send(self._ask.answer)
 
     def shown(self) -> None:
-        """The last view is on the screen; the next one is welcome."""
+        """Ask for the next view: the last one is on the screen."""
         if self._task is not None:
             self._task.shown()
 
     def show_by(self, draw: Callable[[LiveView], None]) -> None:
-        """Have each view drawn by this while it runs, and answered by `shown()` whatever comes of that."""
+        """Draw each view by this function while it runs, and ask for the next by `shown()` even after an error."""
 
         def show(view: LiveView) -> None:
             try:
@@ -500,7 +500,7 @@ class LivePresenter(QObject):
         self.bench.notices.info(said)
 
     def beep(self) -> None:
-        """Have a sound heard, unless none is wanted."""
+        """Play a sound, unless it is switched off."""
         if self.sound:
             self.sounded.emit()
 

@@ -27,18 +27,18 @@ OWN = "opencv"
 
 
 def choose_simulated(settings: AppSettings) -> None:
-    """The next project is one of the simulated rig."""
+    """Set the simulated rig as the source of the next project."""
     settings.keep_text("live/kind", FIRST)
 
 
 def choose_own(settings: AppSettings) -> None:
-    """The next project is one of a rig of one's own: its source is a camera, the one chosen last if there was one."""
+    """Set a camera as the source of the next project, the one chosen last if there was one."""
     if settings.text("live/kind", FIRST) == FIRST:
         settings.keep_text("live/kind", settings.text("live/own kind", OWN))
 
 
 class LiveSettings(QObject):
-    """The source chosen in the whole window, and what it is told: each source's own and each step's."""
+    """Source chosen in the whole window, and the settings of each source for each step."""
 
     changed = Signal()
     devices_changed = Signal()
@@ -59,44 +59,44 @@ class LiveSettings(QObject):
 
     @property
     def kind(self) -> str:
-        """One of SOURCES."""
+        """Kind of the source, one of SOURCES."""
         kind = self._bench.settings.text("live/kind", FIRST)
         return kind if kind in SOURCES else FIRST
 
     @property
     def devices(self) -> tuple[SourceInfo, ...]:
-        """The sources of this kind that were found last."""
+        """Sources of this kind that were found last."""
         kind, found = self._listed
         return found if kind == self.kind else ()
 
     @property
     def choice(self) -> SourceChoice:
-        """The source."""
+        """Chosen source."""
         return SourceChoice(self.kind, self._bench.settings.text(f"live/{self.kind}/id", ""))
 
     @property
     def values(self) -> SourceSettings:
-        """What the source is told; None leaves it as it is."""
+        """Settings of the source; None leaves one as it is."""
         return self._kept().settings(self.choice, self._step).only(self.names)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What this source can be told, as far as is known: exactly once it has been open."""
+        """Names of the settings of this source, as far as known: exactly once it has been open."""
         known = self._known.get(self.choice)
         return SOURCES[self.kind].settings if known is None else known.names
 
     @property
     def capabilities(self) -> Capabilities:
-        """Limits and choices, once the source has been open."""
+        """Limits and choices of its settings, once the source has been open."""
         return self._known.get(self.choice, Capabilities())
 
     @property
     def ending(self) -> Ending:
-        """How a scan's frames are written."""
+        """Ending of the files of a scan's frames."""
         return ".pgm" if self._bench.settings.text("live/ending", "") == ".pgm" else ".png"
 
     def set_kind(self, kind: str) -> None:
-        """Choose the kind of source; its last device and settings come back."""
+        """Choose the kind of source; its last device and settings are restored."""
         if kind != self.kind:
             self._bench.settings.keep_text("live/kind", kind)
             if kind != FIRST:
@@ -130,21 +130,21 @@ class LiveSettings(QObject):
             self._complain(text_of(error))
 
     def take(self, settings: SourceSettings) -> None:
-        """Set what of it is not None."""
+        """Change the settings that are not None."""
         self._keep(self.values.updated(settings))
 
     def set_ending(self, ending: Ending) -> None:
-        """Choose how a scan's frames are written."""
+        """Choose the ending of the files of a scan's frames."""
         if ending != self.ending:
             self._bench.settings.keep_text("live/ending", ending)
             self.changed.emit()
 
     def opened(self, choice: SourceChoice, capabilities: Capabilities) -> None:
-        """A source is open and says what it can be told."""
+        """Store the capabilities of a source that is open."""
         self._known[choice] = capabilities
 
     def look_for_devices(self) -> None:
-        """List the devices of this kind, and see whether its driver is there; `devices_changed` when it is done."""
+        """List the devices of this kind, and check its driver; `devices_changed` when it is done."""
         kind, self.looking = self.kind, True
 
         def found(devices: Any, missing: Message | None = None) -> None:

@@ -13,7 +13,7 @@ from workbench.work import jobs
 
 
 class CurrentPose(CurrentPicture):
-    """Of a pose that has been measured, shows what was found in it and the numbers its stripes have now."""
+    """Current pose: what was found in a measured one, and the present numbers of its stripes."""
 
     _work: PlanesWork
 
@@ -24,7 +24,7 @@ class CurrentPose(CurrentPicture):
         return super().names() or [pose.name for pose in self._work.poses or ()]
 
     def features_of(self, name: str) -> PoseFeatures | None:
-        """What the pictures of a pose show; None if they have not been searched."""
+        """Return the features of a pose; None if its pictures have not been searched."""
         return next((pose for pose in self._work.poses or () if pose.name == name), None)
 
     def refresh(self) -> None:

@@ -20,7 +20,7 @@ from workbench.views import ask
 
 
 class PlanesPage(CalibrationPage):
-    """Record, calibrate, judge, accept."""
+    """Page of the laser planes: record, calibrate, judge, accept."""
 
     UNIT = "mm"
     presenter: PlanesPresenter

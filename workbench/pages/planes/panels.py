@@ -28,7 +28,7 @@ PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
 
 
 class PlanesCard(CalibrationCard):
-    """The stage; the next thing to do is the primary button."""
+    """Card with the stage; the next action is the primary button."""
 
     def _titles(self) -> dict[Stage, str]:
         return {
@@ -71,7 +71,7 @@ class PlanesCard(CalibrationCard):
 
 
 class PlanesLive(QWidget):
-    """The live source, and whether the laser can be switched off for a second picture of each pose."""
+    """Panel of the live source, and whether the laser can be switched off for a second picture of each pose."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -85,7 +85,7 @@ class PlanesLive(QWidget):
         in_column(self.panel, on=self)
 
     def refresh(self) -> None:
-        """Show how poses are taken."""
+        """Show the state of the presenter."""
         self.pairs.setChecked(self._presenter.live.pairs)
         enable(
             self.pairs,
@@ -98,7 +98,7 @@ class PlanesLive(QWidget):
 
 
 class LaserForm(SettingsForm):
-    """What is known of the fixed laser."""
+    """Form of the fixed laser."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -132,7 +132,7 @@ class LaserForm(SettingsForm):
 
 
 class PlanesResult(Result):
-    """How good the calibration shown is, and whether the laser is what it is said to be."""
+    """Panel with the quality of the calibration shown, and whether the laser agrees with its description."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)

@@ -18,7 +18,7 @@ from workbench.views.forms.source_chooser import NextAction
 
 
 class PoseTab(PictureTab):
-    """One pose with corners, stripes and line numbers, or the live picture."""
+    """Tab with one pose, its corners, stripes and line numbers, or with the live picture."""
 
     DETAIL, CORNER_SIZE = PlanesDetail, 10
 

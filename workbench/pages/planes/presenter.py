@@ -33,7 +33,7 @@ PAIRS = "live/planes/pairs"
 
 
 class PlanesPresenter(CalibrationPresenter):
-    """The fan: poses measured, planes solved and judged; what is accepted."""
+    """Presenter of the fan: poses measured, planes solved and judged, and what is accepted."""
 
     step = "planes"
     KEEP = jobs.ACCEPT_PLANES
@@ -60,7 +60,7 @@ class PlanesPresenter(CalibrationPresenter):
 
     @property
     def candidate(self) -> str:
-        """The id of the calibration that is shown, or ""."""
+        """Id of the calibration that is shown, or ""."""
         return planes_id(self.work.calibration.fan) if self.work.calibration is not None else ""
 
     def _is_current(self) -> bool:
@@ -111,7 +111,7 @@ class PlanesPresenter(CalibrationPresenter):
         return self.work.calibration.minority
 
     def accept(self) -> None:
-        """Measure with the planes that are shown, from now on; undoable. A minority of poses needs a decision."""
+        """Accept the planes that are shown; undoable. A minority of poses needs a decision."""
         minority = None if self.can_accept else self._minority()
         if minority is None or self.decide(minority):
             super().accept()
@@ -140,14 +140,14 @@ class PlanesPresenter(CalibrationPresenter):
         self.model.edit(tr("change the laser"), after, f"laser {field}")
 
     def option_values(self) -> dict[str, Any]:
-        """How the planes are calibrated; width and contrast of the stripes as given, or as in the poses measured."""
+        """Return the options of calibrating the planes; width and contrast of stripes as given, or as measured."""
         return values_of("planes", self.project.options, self._found_stripe())
 
     def _found_stripe(self) -> StripeSettings | None:
         return usual_stripe(self.work.poses or ())
 
     def set_pairs(self, on: bool) -> None:
-        """Whether each pose is also taken with the laser off; remembered by the program, as the rig stays the same."""
+        """Take each pose also with the laser off, or not; remembered by the program, as the rig stays the same."""
         self.live.pairs = on
         self.bench.settings.keep_text(PAIRS, "yes" if on else "no")
         self.changed.emit()
@@ -155,7 +155,7 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- poses
 
     def views(self) -> tuple[PlanePose, ...]:
-        """The poses as the calibration shown judges them."""
+        """List the poses as the calibration shown judges them."""
         return self.work.calibration.poses if self.work.calibration is not None else ()
 
     # ---- what happens elsewhere
@@ -173,7 +173,7 @@ class PlanesPresenter(CalibrationPresenter):
         return self.seen_by.camera, self.work.calibration.fan if self.work.calibration is not None else None
 
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """What the plate shows in the pictures there are, without those left out by hand."""
+        """List the views of the plate in the pictures, without those left out by hand."""
         excluded = self.project.options.excluded
         counting = (pose.view for pose in self.work.poses or () if self.stored(pose.name) not in excluded)
         return tuple(view for view in counting if view is not None)

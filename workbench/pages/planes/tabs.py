@@ -30,7 +30,7 @@ TARGET, CHOSEN = "#7FB3D5", "#F2C14E"
 
 
 class RigTab(QWidget):
-    """Camera, light planes, target poses and the stripes on them, in 3D; the chosen pose stands out."""
+    """Tab with camera, light planes, target poses and their stripes in 3D; the chosen pose is marked."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -99,7 +99,7 @@ class RigTab(QWidget):
 
 
 class PlanesHistoryTab(HistoryTab):
-    """Laser planes accepted before."""
+    """Tab with the laser planes accepted before."""
 
     def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
         return kept_planes(entries, in_use)

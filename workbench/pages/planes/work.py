@@ -22,7 +22,7 @@ Poses = tuple[PoseFeatures, ...]
 
 
 class PlanesWork(CalibrationWork[Poses, FanCalibration]):
-    """Finds target and stripes, solves the light planes.
+    """Worker that finds target and stripes, and solves the light planes.
 
     `poses` and `calibration` are of the project as it is, or None.
     """
@@ -32,7 +32,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
     @property
     def poses(self) -> Poses | None:
-        """What the pictures show; None until they have been searched."""
+        """Poses found in the pictures; None until they have been searched."""
         return self.found
 
     def left_out(self) -> dict[str, Message]:
@@ -40,7 +40,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
     @staticmethod
     def name_of(path: Path) -> str:
-        """What a pose is called; its picture with the laser off belongs to the one with the laser on."""
+        """Return the name of a pose; its picture with the laser off belongs to the one with the laser on."""
         return "" if path.stem.endswith("_off") else path.stem
 
     def _labels(self) -> tuple[str, str]:
@@ -69,7 +69,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
 
 class PlanesCamera(QObject):
-    """The accepted camera, which live pictures and the 3D view want.
+    """Accepted camera, for live pictures and the 3D view.
 
     `camera` is None where none is accepted, while it is read (`reading`), and where it cannot be.
     """
@@ -82,13 +82,13 @@ class PlanesCamera(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Nothing is known yet."""
+        """Forget the camera."""
         self.camera: Camera | None = None
         self.reading = False
         self._id = ""
 
     def follow(self) -> None:
-        """Read the accepted camera if it is another than before."""
+        """Read the accepted camera if it has changed."""
         folder, id_ = self._model.folder, self._model.project.accepted.camera
         if folder is None or not id_:
             self.forget()

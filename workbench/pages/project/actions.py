@@ -43,7 +43,7 @@ PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
 
 
 class ProjectActions(QObject):
-    """Opens and closes projects; asks where something could be lost, and only there."""
+    """Actions that open and close projects; they ask only where something could be lost."""
 
     go_to = Signal(str)
     first_measurement_begun = Signal()
@@ -60,7 +60,7 @@ class ProjectActions(QObject):
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
     def new_project(self) -> None:
-        """Ask for a name and make an empty project, for a rig of one's own."""
+        """Ask for a name and make an empty project, for the user's own rig."""
         own = partial(choose_own, self.bench.settings)
         self._make(tr("New project"), tr("New project"), new_project, then=own)
 
@@ -172,13 +172,13 @@ class ProjectActions(QObject):
             self.go_to.emit("inspect")
 
     def try_simulated(self) -> None:
-        """A new project whose live source is the simulated rig."""
+        """Make a new project whose live source is the simulated rig."""
         choose_simulated(self.bench.settings)
         folder = free_folder(self.bench.settings.projects_folder, tr("Simulated rig"))
         self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
 
     def begin_first_measurement(self) -> None:
-        """A new project of the sample's pictures, with nothing measured, for the instructions to lead through.
+        """Make a new project of the sample's pictures, with nothing measured, for the instructions.
 
         If another project is opened while the pictures are rendered, it stays open.
         """
@@ -210,11 +210,11 @@ class ProjectActions(QObject):
         self._preparing = None
 
     def begin_next_part(self) -> None:
-        """The next part of the series, in a project of its own, at its scan."""
+        """Make a project of the next part of the series, and go to its scan."""
         self.copies.next_part(lambda: self.go_to.emit("scan"))
 
     def show_audit_trail(self) -> None:
-        """Show who did what in the open project, and when; what is being changed is saved before."""
+        """Show who did what in the open project, and when; present changes are saved before."""
         if self.model.folder is not None:
             if not self.model.is_read_only:
                 self.save()
@@ -238,7 +238,7 @@ class ProjectActions(QObject):
         self._sign_in()
 
     def may_leave_operator_mode(self) -> bool:
-        """Ask for name and PIN of an inspector or administrator, if people have roles; whether they were given."""
+        """Ask for name and PIN of an inspector or administrator, if people have roles; True if given."""
         if not self.model.rules.people:
             return True
         if not self._sign_in():
@@ -264,7 +264,7 @@ class ProjectActions(QObject):
         return True
 
     def save(self) -> bool:
-        """Save, with what is being typed; False if it could not be."""
+        """Save, with what is being typed; False if that failed."""
         self._take_typed()
         try:
             self.model.save()
@@ -274,7 +274,7 @@ class ProjectActions(QObject):
         return True
 
     def close_project(self, then: Callable[[], object] = lambda: None) -> None:
-        """Save and close the project, `then` go on; neither is done if it is to stay open."""
+        """Save and close the project, then call `then`; neither if it is to stay open."""
 
         def close() -> None:
             self.bench.measuring.cancel_all()
@@ -287,7 +287,7 @@ class ProjectActions(QObject):
             then()
 
     def leave(self, then: Callable[[], object]) -> None:
-        """Save the project, `then` go on: at once, or when a recording has ended; not at all if the user stays.
+        """Save the project, then call `then`: at once, or when a recording has ended; not if the user stays.
 
         Asks if something runs, or cannot be saved. While a recording ends the window takes no input.
         """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def ask_reason(parent: QWidget | None, label: str) -> str:
-    """Ask why limits are changed after something was judged by them; nothing: they are not to be changed."""
+    """Ask why limits are changed after something was judged by them; "": they are not to be changed."""
     text = tr(
         "Something was judged by these limits already. Why are they changed ({what})? It stays for good.", what=label
     )
@@ -31,7 +31,7 @@ def ask_reason(parent: QWidget | None, label: str) -> str:
 
 
 class AuditWindow(QDialog):
-    """Every entry, the newest first; above them whether the chain, and if asked for every file, is what it was."""
+    """Window with every entry, the newest first, and whether the chain, and if asked for every file, is unchanged."""
 
     def __init__(self, bench: Bench, folder: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -70,7 +70,7 @@ class AuditWindow(QDialog):
         self._show()
 
     def add_remark(self, text: str) -> None:
-        """Add an entry with a remark: why something was done."""
+        """Add an entry with a remark."""
         if text.strip():
             try:
                 append(self._folder, "remark", why=text.strip())

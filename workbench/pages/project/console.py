@@ -12,7 +12,7 @@ from workbench.work.process import ChildProcess
 
 
 class ProjectConsole(QObject):
-    """Opens the console's window and keeps it true.
+    """Owner of the console's window, which follows the project.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class ProjectConsole(QObject):
         self.window.begin()
 
     def end(self, *, wait: bool = False) -> None:
-        """End the console, if it is open; `wait` until all its processes are gone where no event comes any more."""
+        """End the console, if it is open; `wait` until its processes are gone where no event comes any more."""
         if self.window is not None:
             self.window.end()
         if wait:

@@ -20,7 +20,7 @@ SCRIPT = "session.py"
 
 
 class ProjectCopies(QObject):
-    """Makes them in the background, and goes on in a new folder, unless another project is open by then.
+    """Maker of copies of projects in the background; it then opens the copy, unless another project is open.
 
     `save` saves the project and says whether it could; `leave` closes it and goes on with what it is given, unless the
     user stays; `open_folder` opens a folder in a state, or as it was saved, and goes on.
@@ -52,7 +52,7 @@ class ProjectCopies(QObject):
     # ---- a copy
 
     def offer_copy(self) -> None:
-        """The project that was opened cannot be saved: offer a copy at once."""
+        """Offer a copy at once: the project that was opened cannot be saved."""
         folder = self._model.folder
         why = tr("{folder} is read-only: what is changed or measured here cannot be saved.", folder=folder)
         answers = [tr("Save a copy …"), tr("Look at it as it is")]
@@ -63,7 +63,7 @@ class ProjectCopies(QObject):
             self._bench.notices.warning(tr("{why} File, Save a copy, goes on in a copy.", why=why))
 
     def save_copy(self) -> None:
-        """Ask for a place, copy the project there, and go on in the copy, with what is changed and not saved."""
+        """Ask for a place, copy the project there, and continue in the copy, with unsaved changes."""
         folder = self._folder(tr("Stop the recording first; then the project can be copied."))
         if folder is None:
             return
@@ -122,7 +122,7 @@ class ProjectCopies(QObject):
     # ---- the next part
 
     def next_part(self, then: Callable[[], object]) -> None:
-        """Ask for serial number and operator, make the next part's project, open it, `then` go on."""
+        """Ask for serial number and operator, make and open the next part's project, and then call `then`."""
         folder = self._folder(tr("Stop the recording first; then the next part can be begun."))
         if folder is None:
             return
@@ -166,7 +166,7 @@ class ProjectCopies(QObject):
     # ---- one file
 
     def pack(self) -> None:
-        """Ask for a file, and put the open project into it as it is now."""
+        """Ask for a file, and pack the open project into it as it is now."""
         folder = self._folder(tr("Stop the recording first; then the project can be packed."))
         if folder is None:
             return

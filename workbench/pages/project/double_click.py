@@ -41,14 +41,14 @@ NOTICED_WITHIN_S = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What was done, in one sentence, and the files it was done to."""
+    """Result of an installation: one sentence, and the files concerned."""
 
     sentence: str
     files: tuple[Path, ...] = ()
 
 
 def install(command: tuple[str, ...] | None = None) -> Outcome:
-    """Have projects open in this program by double click; doing it again changes nothing.
+    """Register the program to open projects by double click; doing it again changes nothing.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def install(command: tuple[str, ...] | None = None) -> Outcome:
 
 
 def uninstall() -> Outcome:
-    """Take all of it back; what is not there is no error.
+    """Undo the registration; what is not there is no error.
 
     Raises
     ------
@@ -105,14 +105,14 @@ def uninstall() -> Outcome:
 
 
 def installed() -> bool:
-    """Whether it is installed for this user."""
+    """Whether the program is registered for this user."""
     if PLATFORM == "win32":
         return bool(_classes().value(f"{CLASS}/shell/open/command/."))
     return PLATFORM != "darwin" and all(path.exists() for path in _wanted(("",)))
 
 
 def starter() -> tuple[str, ...]:
-    """The command that starts the program that runs."""
+    """Make the command that starts the running program."""
     return program_command("trisect-workbench", "workbench")
 
 
@@ -130,7 +130,7 @@ def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:
 
 
 def entries(command: tuple[str, ...]) -> Mapping[str, str]:
-    """The files by which desktops of freedesktop.org know the program, by their names below `share`; and their text."""
+    """Make the files by which desktops of freedesktop.org find the program: texts by their names below `share`."""
     kinds = {"mime": MIME, "packed_mime": PACKED_MIME}
     entry = template("desktop", "trisect.desktop").format(command=" ".join(map(_quoted, command)), **kinds)
     package = template("desktop", "trisect.xml").format(opener=OPENER, packed=PACKED, **kinds)
@@ -142,7 +142,7 @@ def entries(command: tuple[str, ...]) -> Mapping[str, str]:
 
 
 def template(folder: str, name: str) -> str:
-    """One of the program's own files for the system, with {places} for what differs."""
+    """Read one of the program's own files for the system, with {places} for what differs."""
     return (files("resources") / folder / name).read_text(encoding="utf-8")
 
 
@@ -199,7 +199,7 @@ def _unregister() -> None:
 
 
 def choose_double_click(window: QWidget, notices: Notices) -> None:
-    """Ask whether the system is to open projects in this program, do it, and tell what was done."""
+    """Ask whether the system is to open projects in this program, do it, and show the result."""
     try:
         there = installed()
         text = _there() if there else _not_there()

@@ -40,7 +40,7 @@ _PREVIEW_PX = 900
 
 
 class ImportDialog(QDialog):
-    """Asks where pictures lie; nothing is written before the preview has been seen and Import been pressed.
+    """Dialog that asks where pictures lie; nothing is written before the preview was shown and Import pressed.
 
     Stays open for as long as `imported` has not come; to be shown with `open`.
     """
@@ -79,7 +79,7 @@ class ImportDialog(QDialog):
         self._show_plan(None)
 
     def request(self) -> ImportRequest:
-        """What is typed."""
+        """Make the import request of what is typed."""
         fields = {
             **{"camera": self.camera, "planes": self.planes, "planes_off": self.planes_off},
             **{"scan": self.scan, "check": self.check, "check_off": self.check_off},

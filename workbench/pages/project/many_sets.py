@@ -45,7 +45,7 @@ _UNITS = {"thickness": "mm", "U": "mm"}
 
 @dataclass(slots=True)
 class ChosenSet:
-    """A recording set of the table: how far it is, and what became of it; both None until it is measured."""
+    """Recording set of the table, with its progress and its result; both None until it is measured."""
 
     folder: Path
     running: SetProgress | None = None
@@ -53,19 +53,19 @@ class ChosenSet:
 
     @property
     def state(self) -> str:
-        """A key of `SET_STATES`."""
+        """State, a key of `SET_STATES`."""
         if self.result is None:
             return "running" if self.running is not None else "todo"
         return "failed" if self.result.error else "done"
 
     @property
     def reason(self) -> str:
-        """Why it could not be measured."""
+        """Reason why it could not be measured."""
         return text_of(self.result.error) if self.result is not None and self.result.error else ""
 
 
 class ManySets(QObject):
-    """Opens the window when it is first wanted; it is kept: what it measures goes on while it is closed."""
+    """Owner of the window, which is kept: its measurements go on while it is closed."""
 
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
@@ -73,7 +73,7 @@ class ManySets(QObject):
         self.shown: ManySetsWindow | None = None
 
     def open(self) -> None:
-        """Show the window, with what was chosen and measured in it before."""
+        """Show the window, with its earlier sets and results."""
         if self.shown is None:
             self.shown = ManySetsWindow(self._bench, self._window)
         self.shown.show()
@@ -82,7 +82,7 @@ class ManySets(QObject):
 
 
 class ManySetsWindow(QWidget):
-    """Recording sets in a table, where their results go, how they are measured; one bar within a set, one over all.
+    """Window with recording sets in a table, the folder of results, options, and two bars: one set, and all.
 
     What cannot be done is said in this window, over the bars.
     """
@@ -147,7 +147,7 @@ class ManySetsWindow(QWidget):
         )
 
     def run(self) -> None:
-        """Measure what is not yet measured; one that fails does not keep the others from it."""
+        """Measure what is not yet measured; one that fails does not stop the others."""
         self._say("")
         self._measured = [one for one in self._sets if one.state != "done"]
         for one in self._measured:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Stage(StrEnum):
-    """How far the part is."""
+    """Stage of the part."""
 
     PICTURES = "pictures"
     """Its pictures are to be chosen."""
@@ -37,7 +37,7 @@ class Stage(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class OperatorFacts:
-    """What the stage and the four buttons rest on."""
+    """Facts from which the stage and the four buttons follow."""
 
     pictures: bool
     """Pictures of a scan are chosen."""
@@ -58,7 +58,7 @@ class OperatorFacts:
 
 
 class OperatorButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     next_part: str
     measure: str
@@ -67,7 +67,7 @@ class OperatorButtons(NamedTuple):
 
 
 def stage_of(facts: OperatorFacts) -> Stage:
-    """How far the part is."""
+    """Derive the stage of the part from the facts."""
     if facts.running:
         return Stage.MEASURING
     if "scan" in facts.left and not facts.pictures:
@@ -78,7 +78,7 @@ def stage_of(facts: OperatorFacts) -> Stage:
 
 
 def operator_buttons(facts: OperatorFacts) -> OperatorButtons:
-    """What can be done."""
+    """Derive from the facts why each button is disabled."""
     stage = stage_of(facts)
     runs = tr("The part is being measured.") if facts.running else ""
     busy = runs or (tr("Wait until what is running has ended.") if facts.busy else "")
@@ -92,7 +92,7 @@ def operator_buttons(facts: OperatorFacts) -> OperatorButtons:
 
 
 class OperatorMode(QObject):
-    """Whether it is on, how far the open project's part is, and what came of it."""
+    """Operator mode: whether it is on, the stage of the open project's part, and its result."""
 
     changed = Signal()
 
@@ -114,7 +114,7 @@ class OperatorMode(QObject):
 
     @property
     def facts(self) -> OperatorFacts:
-        """As they are."""
+        """Present facts."""
         model, report = self._model, self._model.states["report"].state
         return OperatorFacts(
             pictures=bool(model.project.sources.scan),
@@ -129,26 +129,26 @@ class OperatorMode(QObject):
 
     @property
     def stage(self) -> Stage:
-        """How far the part is."""
+        """Stage of the part."""
         return stage_of(self.facts)
 
     @property
     def buttons(self) -> OperatorButtons:
-        """What can be done."""
+        """Reason for each disabled button, or ""."""
         return operator_buttons(self.facts)
 
     @property
     def worst(self) -> Characteristic | None:
-        """The result that is told large: the worst there is; None where there is none."""
+        """Worst result, which is shown large; None where there is none."""
         return next(iter(self.found.worst_first), None) if self.found is not None else None
 
     def turn(self, on: bool) -> None:
-        """Begin it, or end it."""
+        """Switch it on or off."""
         self.on = on
         self.look()
 
     def take_pictures(self, folder: Path) -> None:
-        """Measure the part by the pictures in a folder."""
+        """Measure the part from the pictures in a folder."""
         put_source(self._model, "scan", folder, tr("pictures of the scan"))
         self.measure()
 
@@ -157,7 +157,7 @@ class OperatorMode(QObject):
         self._whole.start()
 
     def look(self) -> None:
-        """Read what came of the part, if there is something new."""
+        """Read the results of the part, if there are new ones."""
         folder, results = self._model.folder, self._model.results
         asked = (folder, *((step, done.key, done.at) for step, done in sorted(results.items())))
         if self._model.is_open and self._model.project.accepted.planes != self._placed_under:

@@ -19,7 +19,7 @@ from workbench.views.lists.value_rows import ValueRows
 
 
 class ProjectPage(StepPage):
-    """Two columns of fields, one below the other in a narrow window, and at the side how far the whole work is."""
+    """Page with two columns of fields, one below the other in a narrow window, and the progress of all steps."""
 
     presenter: ProjectPresenter
 

@@ -18,7 +18,7 @@ ProgressLevel = Literal["", "good", "warn", "bad"]
 
 
 class ProjectPresenter(StepPresenter):
-    """Name, part, people, temperatures, notes."""
+    """Presenter of name, part, people, temperatures, notes."""
 
     step = "project"
 
@@ -32,13 +32,13 @@ class ProjectPresenter(StepPresenter):
         self.whole.opened()
 
     def do_whole(self) -> None:
-        """Do every step that is not done yet or out of date, to the report; why that cannot be done now is said."""
+        """Do every step that is not done or out of date, to the report; or show why that is impossible now."""
         if why := self.whole.cannot_start:
             self.bench.notices.info(why)
         self.whole.start()
 
     def values(self) -> dict[str, Any]:
-        """The fields as they are."""
+        """Return the fields."""
         info = self.project.info
         return {field.name: getattr(info, field.name) for field in fields(ProjectInfo)}
 
@@ -54,7 +54,7 @@ class ProjectPresenter(StepPresenter):
         return "" if self.project.info.name.strip() else tr("Give the project a name first.")
 
     def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
-        """One row a step: title, state in words, the sentence that explains it, level."""
+        """Make one row a step: title, state in words, the sentence that explains it, level."""
         levels: dict[State, ProgressLevel] = {State.DONE: "good", State.OUTDATED: "warn"}
         return [
             (tr(TITLES[step]), tr(STEP_STATES[one.state]), one.sentence, levels.get(one.state, ""))
@@ -63,7 +63,7 @@ class ProjectPresenter(StepPresenter):
         ]
 
     def next_words(self) -> str:
-        """What to do next, in one sentence."""
+        """Say what to do next, in one sentence."""
         states = self.model.states
         for step in ORDER:
             if states[step].state is not State.DONE:
@@ -71,11 +71,11 @@ class ProjectPresenter(StepPresenter):
         return tr("All steps are done.")
 
     def place(self) -> str:
-        """The project's folder."""
+        """Return the project's folder as text."""
         return str(self.model.folder or "")
 
     def label(self, name: str) -> str:
-        """What a field is called on screen."""
+        """Return the displayed name of a field."""
         return {
             "name": tr("Name"),
             "part": tr("Part"),

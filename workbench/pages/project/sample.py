@@ -16,7 +16,7 @@ from workbench.work.tasks import Task
 
 
 class SampleProject(QObject):
-    """Opens the sample with `open_project`; makes it first, once, if it is not there."""
+    """Opener of the sample by `open_project`; it is made first, once, if it is missing."""
 
     changed = Signal()
     """The sample is being prepared, or no longer."""
@@ -32,7 +32,7 @@ class SampleProject(QObject):
         return self._task is not None
 
     def open(self) -> None:
-        """Open the sample, or begin to make it; it opens then by itself, unless another project is open by then."""
+        """Open the sample, or start to make it and then open it, unless another project is open by then."""
         if self._task is not None:
             self._bench.notices.info(tr("The sample is being prepared; the status bar says how far it is."))
             return

@@ -24,14 +24,14 @@ SHOWN, LONGEST = 8, 40
 
 @dataclass(frozen=True, slots=True)
 class StateChoice:
-    """What `ProjectModel.open` is to be told: the autosaved state, or an earlier `version`; neither for the saved."""
+    """Choice of the state that `ProjectModel.open` opens: autosaved, an earlier `version`, or neither: saved."""
 
     recover: bool = False
     version: ProjectFile | None = None
 
 
 def choose_access(parent: QWidget, folder: Path) -> Access | None:
-    """How to open the project in `folder`; None if the user does not want it. Asks where somebody has it open."""
+    """Ask how to open the project in `folder`; None if the user cancels. Asks where somebody has it open."""
     holder = held_by(folder)
     if holder is None:
         return Access.ALONE
@@ -49,7 +49,7 @@ def choose_access(parent: QWidget, folder: Path) -> Access | None:
 
 
 def choose_state(parent: QWidget, folder: Path) -> StateChoice | None:
-    """Which state of the project in `folder` to open; None if the user wants none.
+    """Ask which state of the project in `folder` to open; None if the user cancels.
 
     Asks where there are changes autosaved before a crash, or where project.json is damaged and something else is not.
 

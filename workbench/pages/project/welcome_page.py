@@ -30,7 +30,7 @@ from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 
 
 class WelcomePage(QWidget):
-    """New, open, recent, sample, simulated rig."""
+    """Page with new, open, recent, sample and simulated rig."""
 
     def __init__(self, projects: ProjectActions, parent: QWidget | None = None) -> None:
         super().__init__(parent)

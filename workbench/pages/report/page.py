@@ -25,7 +25,7 @@ from workbench.views.stage_card import CardButton, StageCard
 
 
 class ReportPage(StepPage):
-    """Preview in the middle; sections, paper and exports at the side."""
+    """Page with the preview in the middle; sections, paper and exports at the side."""
 
     presenter: ReportPresenter
 
@@ -198,7 +198,7 @@ class ReportPage(StepPage):
         return inside
 
     def export_menu(self) -> QMenu:
-        """All that can be handed over, for the window's menu; greyed as the buttons are."""
+        """Make the menu of all exports for the window; entries are disabled as the buttons are."""
         menu = QMenu(tr("&Export"), self)
         menu.setToolTipsVisible(True)
         for kind in EXPORTS:

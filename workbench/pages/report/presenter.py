@@ -27,7 +27,7 @@ EXPORT_FRAME = "frame of exports"
 
 
 class ReportPresenter(StepPresenter):
-    """Preview, sections, paper, export.
+    """Presenter of preview, sections, paper and export.
 
     `pages` are the last ones drawn; while `drawing`, others are on their way. `problem` says why there are none.
     """
@@ -49,11 +49,11 @@ class ReportPresenter(StepPresenter):
     # ---- what is in it
 
     def sections(self) -> list[tuple[str, str, bool]]:
-        """Name, title, and whether it is in the report, of each section that can be left out."""
+        """List each section that can be left out: name, title, and whether it is in the report."""
         return [(name, tr(title), name not in self.project.report.hidden) for name, title in SECTIONS.items()]
 
     def empty_section(self, name: str) -> str:
-        """Why a section has nothing to print yet, or ""."""
+        """Give the reason why a section has nothing to print yet, or ""."""
         kinds = {feature.kind for feature in self.project.inspection.features}
         nothing = {
             "view": "" if self.view else tr("Turn the surface on the Inspect page: it is printed as you left it."),
@@ -71,7 +71,7 @@ class ReportPresenter(StepPresenter):
         return nothing.get(name, "")
 
     def choose_section(self, name: str, shown: bool) -> None:
-        """Put a section in or leave it out; undoable."""
+        """Add a section or leave it out; undoable."""
         hidden = self.project.report.hidden - {name} if shown else self.project.report.hidden | {name}
         title = SECTIONS[name]
         label = tr("put in “{title}”", title=title) if shown else tr("leave out “{title}”", title=title)
@@ -79,17 +79,17 @@ class ReportPresenter(StepPresenter):
         self.model.edit(label, replace(self.project, report=report))
 
     def choose_paper(self, paper: Any) -> None:
-        """A4 or Letter; undoable."""
+        """Choose A4 or Letter; undoable."""
         report = replace(self.project.report, paper=paper)
         self.model.edit(tr("print on {paper}", paper=paper), replace(self.project, report=report))
 
     def choose_language(self, language: Any) -> None:
-        """One of `languages`, or "": that of the window; undoable."""
+        """Choose one of `languages`, or "", that of the window; undoable."""
         report = replace(self.project.report, language=language)
         self.model.edit(tr("language of the report"), replace(self.project, report=report))
 
     def choose_template(self, path: Path | None) -> None:
-        """Print with the template in this file (None: without any), and as it says; undoable."""
+        """Choose the template in this file (None: none), with its options; undoable."""
         folder, choices = self.model.folder, self.project.report
         if folder is None:
             return
@@ -114,7 +114,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """How far the report is."""
+        """Stage of the report."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -138,7 +138,7 @@ class ReportPresenter(StepPresenter):
         return "" if self.ready() else tr("Scan the part first; then there is something to report.")
 
     def warning(self) -> str:
-        """What is out of date in the results the report prints, or ""."""
+        """Say which of the results in the report are out of date, or ""."""
         states = self.model.states
         for step in ("scan", "inspect"):
             if states[step].state is State.OUTDATED:
@@ -158,11 +158,11 @@ class ReportPresenter(StepPresenter):
 
     @property
     def read_only(self) -> bool:
-        """Whether the project cannot be written to: then its report can be exported, but not kept with it."""
+        """Whether the project cannot be written to: then its report can be exported, but not stored with it."""
         return self.model.is_read_only
 
     def why_not_make(self) -> str:
-        """Why the report cannot be made now, or ""."""
+        """Give the reason why the report cannot be made now, or ""."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.MAKING: tr("The report is being made."),
@@ -173,11 +173,11 @@ class ReportPresenter(StepPresenter):
         }[why_not_make(self._facts())]
 
     def do_run(self) -> None:
-        """Make the report into the project's results."""
+        """Make the report among the project's results."""
         self._make("")
 
     def export(self, kind: str, path: Path) -> None:
-        """Write a copy for others, of a kind in EXPORTS; a report that is not up to date is made first."""
+        """Write a copy for others, of a kind in EXPORTS; a report that is out of date is made first."""
         ending = EXPORTS[kind].ending
         path = path if path.suffix.lower() == ending else path.with_name(path.name + ending)
         self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
@@ -188,7 +188,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def in_camera_frame(self) -> bool:
-        """Whether geometry is handed over as the camera sees it, instead of as the part lies."""
+        """Whether geometry is exported in the camera's frame, instead of the part's."""
         return self.bench.settings.text(EXPORT_FRAME, "part") == "camera"
 
     @in_camera_frame.setter
@@ -196,7 +196,7 @@ class ReportPresenter(StepPresenter):
         self.bench.settings.keep_text(EXPORT_FRAME, "camera" if wanted else "part")
 
     def export_missing(self, kind: str) -> str:
-        """Why this cannot be handed over yet, or ""."""
+        """Give the reason why this cannot be exported yet, or ""."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.NO_CAMERA: tr("Calibrate the camera first."),
@@ -206,7 +206,7 @@ class ReportPresenter(StepPresenter):
         }[why_not_export(self._facts(), kind)]
 
     def export_place(self, kind: str) -> Path:
-        """The file proposed for an export: where the last one was put, called like the part."""
+        """Return the proposed file of an export: in the folder of the last one, named after the part."""
         name = self.project.info.part or self.project.info.name or tr("result")
         name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or tr("result")
         words = {
@@ -221,7 +221,7 @@ class ReportPresenter(StepPresenter):
         return (folder if folder.is_dir() else Path.home()) / (name + EXPORTS[kind].ending)
 
     def results_folder(self) -> Path | None:
-        """Where the results lie; None if there are none."""
+        """Return the folder of the results; None if there are none."""
         folder = self.model.folder / "results" if self.model.folder is not None else None
         return folder if folder is not None and folder.is_dir() else None
 

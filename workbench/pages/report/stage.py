@@ -9,7 +9,7 @@ from core.files.results.export_list import EXPORTS
 
 
 class Stage(StrEnum):
-    """How far the report is."""
+    """Stage of the report."""
 
     NONE = "none"
     READY = "ready"
@@ -19,7 +19,7 @@ class Stage(StrEnum):
 
 
 class WhyNot(StrEnum):
-    """Why something cannot be done now; nothing: it can."""
+    """Reason why an action is not possible now; "": it is."""
 
     NOTHING = ""
     MAKING = "making"
@@ -30,7 +30,7 @@ class WhyNot(StrEnum):
 
 
 class Facts(NamedTuple):
-    """What the stage rests on; `camera` to `report`: there is such a result."""
+    """Facts from which the stage follows; `camera` to `report`: there is such a result."""
 
     camera: bool
     scan: bool
@@ -45,7 +45,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """How far it is."""
+    """Derive the stage from the facts."""
     if facts.making:
         return Stage.MAKING
     if not facts.scan:
@@ -56,7 +56,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def why_not_make(facts: Facts) -> WhyNot:
-    """Whether the report can be made into the project's results."""
+    """Give the reason why the report cannot be made among the project's results."""
     if facts.making:
         return WhyNot.MAKING
     if not facts.scan:
@@ -65,7 +65,7 @@ def why_not_make(facts: Facts) -> WhyNot:
 
 
 def why_not_export(facts: Facts, kind: str) -> WhyNot:
-    """Whether one of EXPORTS can be handed over."""
+    """Give the reason why one of EXPORTS cannot be exported."""
     needs = EXPORTS[kind].needs
     if needs == "camera":
         return WhyNot.NOTHING if facts.camera else WhyNot.NO_CAMERA

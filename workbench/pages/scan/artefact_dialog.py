@@ -29,7 +29,10 @@ LONGEST_ID = 60
 
 
 class ArtefactDialog(QDialog):
-    """The registers at the left, the fields of the chosen or a new artefact at the right; to be shown with `open`."""
+    """Dialog with the registers at the left, and the fields of the chosen or a new artefact.
+
+    To be shown with `open`.
+    """
 
     def __init__(self, artefacts: KnownArtefacts, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -75,12 +78,12 @@ class ArtefactDialog(QDialog):
 
     @property
     def chosen(self) -> Artefact | None:
-        """The artefact that is chosen in the table."""
+        """Artefact that is chosen in the table."""
         row = self.table.current_row()
         return self._artefacts.known.get(self._ids[row]) if 0 <= row < len(self._ids) else None
 
     def refresh(self) -> None:
-        """Show the registers as they are."""
+        """Show the present registers."""
         known, of_project = self._artefacts.known, self._artefacts.of_project
         before = self.chosen
         wanted, self._ids = self._wanted or (before.id if before else ""), tuple(known)
@@ -221,12 +224,12 @@ class ArtefactDialog(QDialog):
 
 
 def has_lapsed(artefact: Artefact) -> bool:
-    """Whether its certificate does not hold today."""
+    """Whether its certificate has expired today."""
     return artefact.due is not None and artefact.due < date.today()
 
 
 def row(artefact: Artefact, of_project: bool) -> tuple[str, ...]:
-    """An artefact as the table has it."""
+    """Make the row of an artefact in the table."""
     value, width = with_uncertainty(artefact.value_mm, artefact.U_mm, wording())
     due = tr("not stated") if artefact.due is None else artefact.due.isoformat()
     return (
@@ -241,7 +244,7 @@ def row(artefact: Artefact, of_project: bool) -> tuple[str, ...]:
 
 
 def complaints(values: Mapping[str, object], taken: Collection[str]) -> dict[str, str]:
-    """What is wrong with the fields of an artefact, by their keys; `taken` are the other ids in its register."""
+    """Say what is wrong with the fields of an artefact, by their keys; `taken` are the other ids in its register."""
     name, due = str(values["id"]).strip(), str(values["due"]).strip()
     wrong = {}
     if not name:
@@ -262,14 +265,14 @@ def complaints(values: Mapping[str, object], taken: Collection[str]) -> dict[str
 
 
 def artefact_of(values: Mapping[str, object]) -> Artefact:
-    """The artefact that the fields describe, where nothing is wrong with them."""
+    """Make the artefact that the fields describe, where nothing is wrong with them."""
     value, width, k = (float(str(values[key])) for key in ("value_mm", "U_mm", "k"))
     name, certificate, due = (str(values[key]).strip() for key in ("id", "certificate", "due"))
     return Artefact(name, value, width, k, certificate, _day(due), cast(ArtefactKind, values["kind"]))
 
 
 def values_of(artefact: Artefact, *, own: bool) -> dict[str, object]:
-    """The fields that describe an artefact of the user's `own` register or the project's."""
+    """Return the fields that describe an artefact of the user's `own` register or the project's."""
     due = "" if artefact.due is None else artefact.due.isoformat()
     return {**asdict(artefact), "due": due, "register": "own" if own else "project"}
 

@@ -20,7 +20,7 @@ from workbench.work.tasks import Task
 
 
 class KnownArtefacts(QObject):
-    """The user's and the project's artefacts, and what was measured of them with the accepted calibrations.
+    """Artefacts of the user and the project, and their measurements with the accepted calibrations.
 
     `own` are the user's by their ids, as they were last read, `lengths` the names of what each kind can be compared
     with. `checks` are the results, of each artefact the one nearest in time to the recording, `charts` all of them with
@@ -41,22 +41,25 @@ class KnownArtefacts(QObject):
 
     @property
     def of_project(self) -> Mapping[str, Artefact]:
-        """The project's own, by their ids."""
+        """Project's own artefacts, by their ids."""
         return {one.id: one for one in self._model.project.artefacts}
 
     @property
     def known(self) -> Mapping[str, Artefact]:
-        """All of them; the project's counts where both have one of the same id."""
+        """Artefacts of both registers; the project's counts where both have one of the same id."""
         return {**self.own, **self.of_project}
 
     @property
     def cannot_compare(self) -> str:
-        """Why nothing can be compared now, or ""."""
+        """Reason why nothing can be compared now, or ""."""
         reasons = [self._why_not(step) for step in ("gauge", "inspection")]
         return reasons[0] if all(reasons) else ""
 
     def why_not(self, artefact: Artefact, characteristic: str) -> str:
-        """Why this characteristic cannot be compared with an artefact now, or ""; "" is the thickness of the part."""
+        """Give the reason why this characteristic cannot be compared with an artefact now, or "".
+
+        "" is the thickness.
+        """
         if artefact.kind == "block" and not characteristic:
             return self._why_not("gauge")
         return self._why_not("inspection") or (
@@ -81,7 +84,7 @@ class KnownArtefacts(QObject):
         )
 
     def compare(self, artefact: Artefact, characteristic: str = "") -> None:
-        """Compare this characteristic with its certificate; the rig's history keeps the result."""
+        """Compare this characteristic with its certificate; the result is added to the rig's history."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_compare:
             return
@@ -112,7 +115,7 @@ class KnownArtefacts(QObject):
         self._model.edit(label, replace(project, artefacts=(*project.artefacts, artefact)))
 
     def change(self, before: Artefact, after: Artefact | None, *, own: bool) -> None:
-        """Put an artefact in the place of another in the same register, or remove that for None; as `add`."""
+        """Replace an artefact in its register, or remove it for None; undoable as `add`."""
         self.problem = ""
         if own:
             self._ask_for_own(jobs.CHANGE_OWN_ARTEFACT, before.id, after)
@@ -128,7 +131,7 @@ class KnownArtefacts(QObject):
         self._model.edit(label, replace(project, artefacts=tuple(one for one in left if one is not None)))
 
     def read(self) -> None:
-        """Read the user's register, which may have been written by hand, and what there is to compare."""
+        """Read the user's register, which may have been edited by hand, and the lengths to compare."""
         self.problem = ""
         self._ask_for_own(jobs.OWN_ARTEFACTS)
         if self._model.folder is None:
@@ -149,14 +152,14 @@ class KnownArtefacts(QObject):
         )
 
     def opened(self) -> None:
-        """Another project: stop, and read what was measured with its calibrations."""
+        """Follow another project: stop, and read what was measured with its calibrations."""
         if self._task is not None:
             self._task.cancel()
         self._task, self.checks, self.charts, self._looked, self.lengths = None, (), (), "", {}
         self.follow()
 
     def follow(self) -> None:
-        """The project is another: read what was measured with the calibrations in force."""
+        """Follow a change of the project: read what was measured with its present calibrations."""
         folder, project = self._model.folder, self._model.project
         accepted = project.accepted
         wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.planes else ""

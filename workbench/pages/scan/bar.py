@@ -23,7 +23,7 @@ from workbench.views.layouts import Elided, Folding, enable, in_column, in_row
 
 
 class FrameBar(QWidget):
-    """Which frame is looked at, in which stage, and whether it counts."""
+    """Bar with the current frame, its stage, and whether it counts."""
 
     view_chosen = Signal(object)
     """View."""
@@ -43,7 +43,7 @@ class FrameBar(QWidget):
         self.used.clicked.connect(lambda on: presenter.set_used([presenter.scrub.current], on))
 
     def refresh(self) -> None:
-        """Show which frame it is."""
+        """Show the current frame."""
         p = self._presenter
         names, scrub = p.work.names, p.scrub
         self.slider.blockSignals(True)

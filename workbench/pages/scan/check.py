@@ -21,7 +21,7 @@ from workbench.work.tasks import Task
 
 
 class CheckStage(StrEnum):
-    """How far the check is."""
+    """Stage of the check."""
 
     NONE = "none"
     CHOSEN = "chosen"
@@ -32,7 +32,7 @@ class CheckStage(StrEnum):
 
 
 class RigCheck(QObject):
-    """Checks the accepted calibrations by pictures of the day, and records the result in the project.
+    """Check of the accepted calibrations by pictures of the day; its result is recorded in the project.
 
     `look` is the last result, whatever it was made from; None if there is none, or until it is read. `history` are the
     checks of the rig so far; None until they are read.
@@ -59,12 +59,12 @@ class RigCheck(QObject):
 
     @property
     def folder(self) -> Path | None:
-        """The folder of the pictures."""
+        """Folder of the pictures."""
         return folder_of(self._model, "check")
 
     @property
     def stage(self) -> CheckStage:
-        """How far it is."""
+        """Stage of the check."""
         if self._task is not None:
             return CheckStage.CHECKING
         if self.problem:
@@ -75,18 +75,18 @@ class RigCheck(QObject):
 
     @property
     def valid(self) -> InterimCheck | None:
-        """The result, if it is of the calibrations and pictures in force."""
+        """Result, if it is of the present calibrations and pictures."""
         return self.look if self.stage is CheckStage.CHECKED else None
 
     @property
     def problem(self) -> str:
-        """Why the last check of the project as it is gave no result, or ""."""
+        """Reason why the last check of the project as it is gave no result, or ""."""
         made_of, problem = self._problem
         return problem if problem and made_of == _key(self._model.project) else ""
 
     @property
     def cannot_check(self) -> str:
-        """Why nothing can be checked now, or ""."""
+        """Reason why nothing can be checked now, or ""."""
         project = self._model.project
         if self._task is not None:
             return tr("Camera and laser are being checked.")
@@ -102,7 +102,7 @@ class RigCheck(QObject):
 
     @property
     def cannot_readjust(self) -> str:
-        """Why camera and laser cannot be re-adjusted by the check now, or ""."""
+        """Reason why camera and laser cannot be re-adjusted by the check now, or ""."""
         if self._readjusting is not None:
             return tr("What a re-adjustment would change is being worked out.")
         if self.valid is None:
@@ -113,7 +113,7 @@ class RigCheck(QObject):
 
     @property
     def past(self) -> PastCheck | None:
-        """The result as the history has it."""
+        """Result as the history has it."""
         look, history = self.look, self.history
         if look is None or history is None:
             return None
@@ -121,18 +121,18 @@ class RigCheck(QObject):
         return next((one for one in history.checks if (one.pictures_id, one.calibration_id) == same), None)
 
     def changed_since(self) -> tuple[str, ...]:
-        """What the result rests on and is not what it was."""
+        """List the inputs of the result that have changed since."""
         done = self._model.results.get("check")
         return changed(done.rests_on, inputs_of("check", self._model.project, {})) if done is not None else ()
 
     def use_folder(self, folder: Path) -> None:
-        """Check by the pictures in this folder; the choice is undoable, and what can be checked is."""
+        """Use the pictures in this folder, undoable, and check if that is possible."""
         self.cancel()
         put_source(self._model, "check", folder, tr("choose the pictures of the check"))
         self.start()
 
     def start(self) -> None:
-        """Check."""
+        """Compare the check's pictures with the calibrations, in the worker process."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_check:
             return
@@ -151,7 +151,7 @@ class RigCheck(QObject):
         self.changed.emit()
 
     def propose_readjustment(self) -> None:
-        """Work out what a re-adjustment by the check would change; `proposed` tells."""
+        """Compute what a re-adjustment by the check would change; `proposed` is emitted with it."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_readjust:
             return
@@ -170,7 +170,7 @@ class RigCheck(QObject):
         self.changed.emit()
 
     def accept_readjustment(self, proposal: ProposedReadjustment) -> None:
-        """Measure with camera and laser as re-adjusted, from now on; undoable."""
+        """Accept camera and laser as re-adjusted; undoable."""
         folder, project = self._model.folder, self._model.project
         if folder is None:
             return
@@ -208,7 +208,7 @@ class RigCheck(QObject):
             self._task.cancel()
 
     def opened(self) -> None:
-        """Another project: stop, forget, and read its result."""
+        """Follow another project: stop, and read its result."""
         for task in (self._task, self._readjusting):
             if task is not None:
                 task.cancel()
@@ -217,7 +217,7 @@ class RigCheck(QObject):
         self.follow()
 
     def follow(self) -> None:
-        """The project or its results are others: read the result that is recorded."""
+        """Follow a change of the project or its results: read the recorded result."""
         folder, done = self._model.folder, self._model.results.get("check")
         wanted = f"{folder}|{done.key}|{done.at}" if folder is not None and done is not None else ""
         if wanted == self._looked:

@@ -38,7 +38,7 @@ from workbench.views.plots.control import ControlPlot
 
 
 class CheckCard(QFrame):
-    """A traffic light in words: icon and word, a sentence on what to do, the figures, and the buttons."""
+    """Card of the check: icon and word, a sentence on what to do, the figures, and the buttons."""
 
     def __init__(
         self, check: RigCheck, artefacts: KnownArtefacts, live: LivePresenter, parent: QWidget | None = None
@@ -81,7 +81,7 @@ class CheckCard(QFrame):
         ask_to_stop_other(self, self._live, question)
 
     def refresh(self, *, wanted: bool = False) -> None:
-        """Show how far the check is; `wanted`: to take its pictures is the next thing to do."""
+        """Show the stage of the check; `wanted`: taking its pictures is the next action."""
         self._wanted = wanted
         check, stage = self._check, self._check.stage
         taking = self._live.running
@@ -166,7 +166,7 @@ class CheckCard(QFrame):
             self._check.accept_readjustment(proposal)
 
     def show_detail(self, detail: Detail | None) -> None:
-        """What is thought of the picture that is seen now."""
+        """Show the judgement of the present live picture."""
         sentence = detail.sentence if isinstance(detail, PlanesDetail) else None
         seen = text_of(sentence) if sentence is not None else ""
         if seen != self._seen:
@@ -279,6 +279,6 @@ def _tip(check: PastCheck) -> str:
 def facts(
     look: InterimCheck | None, chart: ControlChart | None, artefacts: Sequence[ArtefactCheck]
 ) -> tuple[Fact, ...]:
-    """What is told of the check, and of known artefacts measured with the same calibrations."""
+    """Make the facts of the check, and of known artefacts measured with the same calibrations."""
     of_artefacts = (named(one.artefact.id, artefact_facts(one)) for one in artefacts)
     return (*(check_facts(look, chart) if look is not None else ()), *chain(*of_artefacts))

@@ -37,7 +37,7 @@ class ScanCloud(QWidget):
         self.scene.clear(self._last)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p = self._presenter
         if p.stage in (Stage.LIVE, Stage.MEASURING) or p.work.frames is None:
             return  # what is there grows, or stands until it is clear what comes next
@@ -54,24 +54,24 @@ class ScanCloud(QWidget):
         self.scene.set_cloud(look.points, values=look.sigma, colouring=Colouring("σ", "mm", (0.0, limit)))
 
     def begin_live(self) -> None:
-        """A recording begins: its points will come."""
+        """Clear the view for a recording that begins."""
         self._look = None
         self.scene.clear(self._message())
         self._grow_anew()
 
     def begin_measuring(self) -> None:
-        """The recording is being measured: what is shown stands until its first points come."""
+        """Prepare for measuring the recording: what is shown stays until its first points come."""
         self._look, self._growing = None, True
         if not self.scene.state().points:
             self.scene.clear(self._message())
 
     def show_live(self, view: LiveView) -> None:
-        """What a picture of the live source brings."""
+        """Show the new points of a picture of the live source."""
         if isinstance(view.detail, ScanDetail):
             self.grow(view.detail)
 
     def grow(self, detail: ScanDetail) -> None:
-        """Points of a frame, or all points anew."""
+        """Add the points of a frame, or show all points anew."""
         if detail.renewed:
             self._grow_anew()
         if len(detail.points):

@@ -14,7 +14,7 @@ from workbench.views.colours import Level
 
 
 class Guidance(NamedTuple):
-    """What the page shows large."""
+    """Guidance that the page shows large: light, sentence and button."""
 
     level: Level
     """Of the light; "" while something is to be done that is neither good nor bad."""
@@ -27,7 +27,7 @@ class Guidance(NamedTuple):
 
 
 class Situation(NamedTuple):
-    """What it rests on."""
+    """Facts from which the guidance follows."""
 
     state: str
     """What goes on, in a few words."""
@@ -42,7 +42,7 @@ class Situation(NamedTuple):
 
 
 def guidance(now: Situation) -> Guidance:
-    """What is to be said: the first thing that the hand, or the technician, has to do."""
+    """Choose the guidance: the first thing that the hand, or the technician, has to do."""
     recording = now.detail is not None and is_recording(now.detail.stage)
     level, said = _said(now)
     failed = next((text_of(one.message) for one in now.checks if one.state == "failed"), "") if recording else ""

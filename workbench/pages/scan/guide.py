@@ -29,7 +29,7 @@ LIGHTS: dict[Level, tuple[str, str]] = {
 
 
 class Large(QLabel):
-    """A sentence in letters as large as there is room for."""
+    """Sentence in letters as large as there is room for."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -64,7 +64,7 @@ class Large(QLabel):
 
 
 class GuideBand(QFrame):
-    """A light, a sentence, how much is covered, how many frames there are, and one large button."""
+    """Band with a light, a sentence, the coverage, the number of frames, and one large button."""
 
     exchange_wanted = Signal()
     """The picture and the points are to change places."""
@@ -105,7 +105,7 @@ class GuideBand(QFrame):
         self._steady.shown.connect(self._show)
 
     def refresh(self) -> None:
-        """Show what the presenter says now; a sentence stays for at least a second."""
+        """Show the state of the presenter; a sentence stays for at least a second."""
         live, now = self._presenter.live, self._presenter.guidance
         self._steady.want((now.level, now.sentence), at_once=now.level == "")
         self.beside.setText(now.beside)

@@ -37,7 +37,7 @@ STAGES_BEFORE = ("reference", "ready")
 
 
 def unchecked(check: Check) -> bool:
-    """Whether the note is that camera and laser have not been checked today: it stays as long as that is so."""
+    """Whether the note says that camera and laser have not been checked today: it stays as long as that is so."""
     return check.name == "check" and check.state == "unknown"
 
 
@@ -48,7 +48,7 @@ _STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
 
 
 class ScanPage(StepPage):
-    """Record, measure, look through the frames, measure again."""
+    """Page of the scan: record, measure, look through the frames, measure again."""
 
     presenter: ScanPresenter
     card: ScanCard
@@ -188,7 +188,7 @@ class ScanPage(StepPage):
         self.picture.refresh()
 
     def eventFilter(self, watched: Any, event: QEvent) -> bool:
-        """The arrows go through the frames on a picture that is shown whole, too: there is nothing to pan."""
+        """Go through the frames by the arrow keys also on a picture that is shown whole: there is nothing to pan."""
         if (
             isinstance(event, QKeyEvent)
             and event.key() in _STEPS

@@ -35,7 +35,7 @@ FAST = HintLimits().speed_share
 
 
 class ScanCard(StageCard):
-    """The stage; the next thing to do is the primary button."""
+    """Card with the stage; the next action is the primary button."""
 
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         self._presenter = p = presenter
@@ -112,7 +112,7 @@ class ScanCard(StageCard):
 
 
 class SettingsPanel(QWidget):
-    """How the scan is measured."""
+    """Panel with the settings of the scan."""
 
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -176,7 +176,7 @@ class SettingsPanel(QWidget):
 
 
 class ResultPanel(QWidget):
-    """How good the measured scan is, why frames gave no points, and what else is to be said."""
+    """Panel with the quality of the measured scan, why frames gave no points, and notes."""
 
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -205,7 +205,7 @@ class ResultPanel(QWidget):
 
 
 class RunningPanel(QWidget):
-    """How the hand does while a scan runs: gauges, coverage, hints."""
+    """Panel with the motion of the hand while a scan runs: gauges, coverage, hints."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -238,7 +238,7 @@ class RunningPanel(QWidget):
         grid.setRowStretch(2, 1)
 
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
-        """What a frame shows; its picture is `width_px` wide."""
+        """Show the values of a frame; its picture is `width_px` wide."""
         preview = detail.preview if detail is not None and detail.stage == "scanning" else None
         self.covered.setText(words.covered_sentence(detail.share) if detail is not None else "")
         self.hints.set_hints([text_of(hint) for hint in preview.hints] if preview is not None else ())

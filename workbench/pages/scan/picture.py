@@ -20,7 +20,7 @@ from workbench.views.layouts import in_column
 
 
 class View(StrEnum):
-    """The stages of a frame, in the order they come about."""
+    """Stage of a frame that can be shown, in the order of processing."""
 
     RECORDED = "recorded"
     DIFFERENCE = "difference"
@@ -31,7 +31,7 @@ class View(StrEnum):
 
 
 class ScanPicture(QWidget):
-    """Draws whatever is to be seen now: live, of a recording that is measured, or of one frame."""
+    """Picture of the scan: live, of a recording that is measured, or of one frame."""
 
     def __init__(
         self, presenter: ScanPresenter, next_action: Callable[[], NextAction], parent: QWidget | None = None
@@ -50,7 +50,7 @@ class ScanPicture(QWidget):
             live.notice.connect(self.image.announce)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         p = self._presenter
         running = next((live for live in (p.live, p.check_live) if live.running), None)
         if running is not None:
@@ -68,21 +68,21 @@ class ScanPicture(QWidget):
         self.refresh()
 
     def show_live(self, view: LiveView) -> None:
-        """A picture of the live source."""
+        """Show a picture of the live source."""
         self._begin("live")
         self.image.set_picture(view.picture, scale=view.scale)
         if isinstance(view.detail, ScanDetail):
             self._show_detail(view.detail)
 
     def show_check(self, view: LiveView) -> None:
-        """A picture taken for the check: the plane target and the stripes on it."""
+        """Show a picture taken for the check: the plane target and the stripes on it."""
         self._begin("check")
         self.image.set_picture(view.picture, scale=view.scale)
         if isinstance(view.detail, PlanesDetail):
             overlays.show_target(self.image, view.detail)
 
     def show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
-        """A frame of the recording that is being measured."""
+        """Show a frame of the recording that is being measured."""
         self._begin("measured")
         self.image.set_picture(picture, scale=scale)
         self._show_detail(detail)

@@ -40,7 +40,7 @@ from workbench.step_state import State
 
 
 class ScanPresenter(StepPresenter):
-    """The scan: recorded, measured, looked at."""
+    """Presenter of the scan: recording, measuring, looking through its frames."""
 
     step = "scan"
 
@@ -80,7 +80,7 @@ class ScanPresenter(StepPresenter):
         self.model.results_changed.connect(self._results_changed)
 
     def offer_whole(self, whole: MeasuringAll) -> None:
-        """Have the page offer the whole job."""
+        """Set the whole job that the page offers."""
         self.whole = whole
         whole.changed.connect(self.changed)
 
@@ -88,7 +88,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """How far the scan is."""
+        """Stage of the scan."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -117,7 +117,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def guidance(self) -> Guidance:
-        """What is said to the hand now."""
+        """Present guidance for the hand."""
         live = self.live
         return guidance(
             Situation(live.state_text(), live.gone, live.stopping, live.question, live.paused, self._seen, live.checks)
@@ -125,7 +125,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def scrubbing(self) -> bool:
-        """Whether single frames of the recording are looked at: nothing runs, and there are frames."""
+        """Whether single frames of the recording are shown: nothing runs, and there are frames."""
         running = self.check_live.running or self.stage in (Stage.LIVE, Stage.MEASURING)
         return not running and bool(self.work.frames)
 
@@ -146,7 +146,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def cannot_measure(self) -> str:
-        """Why the scan cannot be measured now, or ""."""
+        """Reason why the scan cannot be measured now, or ""."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.LIVE: tr("Stop the recording first."),
@@ -161,7 +161,7 @@ class ScanPresenter(StepPresenter):
         }[buttons_of(self._facts()).measure]
 
     def changed_since(self) -> tuple[str, ...]:
-        """What the result rests on and is not what it was."""
+        """List the inputs of the result that have changed since."""
         done = self.model.results.get("scan")
         return changed(done.rests_on, inputs_of("scan", self.project, {})) if done is not None else ()
 
@@ -172,7 +172,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def check_wanted(self) -> bool:
-        """Whether pictures of the check are the next thing to do: none is of today, and the scan is still to come.
+        """Whether pictures of the check are the next thing to take: none is of today, and the scan is still to come.
 
         Planes that were calibrated a moment ago are as good as a check.
         """
@@ -189,11 +189,11 @@ class ScanPresenter(StepPresenter):
 
     @property
     def folder(self) -> Path | None:
-        """The folder of the recording."""
+        """Folder of the recording."""
         return folder_of(self.model, "scan")
 
     def use_folder(self, folder: Path) -> None:
-        """Measure another recording; with that of a recording set comes the check of its day."""
+        """Measure another recording; with that of a recording set, the check of its day is used."""
         self.live.stop()
         self.run.cancel()
         put_source(self.model, "scan", folder, tr("choose the recording of the scan"))
@@ -204,14 +204,14 @@ class ScanPresenter(StepPresenter):
     # ---- frames
 
     def go_to_next_mark(self) -> None:
-        """Look at the next frame that was marked; after the last one, at the first."""
+        """Show the next frame that was marked; after the last one, the first."""
         names, here = self.work.names, self.scrub.index
         marked = [place for place, name in enumerate(names) if name in self.work.marked]
         if marked:
             self.scrub.go_to(next((place for place in marked if place > here), marked[0]))
 
     def record_of(self, name: str) -> FrameRecord | None:
-        """What became of a frame, if the recording has been measured."""
+        """Return the record of a frame, if the recording has been measured."""
         return self.work.records().get(name)
 
     def is_left_out(self, name: str) -> bool:
@@ -219,7 +219,7 @@ class ScanPresenter(StepPresenter):
         return name in self.project.options.excluded
 
     def set_used(self, names: Sequence[str], used: bool) -> None:
-        """Let frames count, or leave them out; undoable."""
+        """Use frames, or leave them out; undoable."""
         excluded = self.project.options.excluded
         after = excluded - set(names) if used else excluded | set(names)
         what = short(names[0]) if len(names) == 1 else tr("{count} frames", count=len(names))
@@ -227,7 +227,7 @@ class ScanPresenter(StepPresenter):
         self._set_options(label, replace(self.project.options, excluded=after))
 
     def points_of_frame(self) -> tuple[Any, Any]:
-        """Pixels (N, 2) and σ (N,) in mm of the measured points of the frame whose stages are shown."""
+        """Return pixels (N, 2) and σ (N,) in mm of the measured points of the frame whose stages are shown."""
         look, stages = self.work.look, self.scrub.stages
         record = self.record_of(stages.name) if stages is not None else None
         if look is None or record is None:
@@ -244,11 +244,11 @@ class ScanPresenter(StepPresenter):
 
     @property
     def largest_sigma_mm(self) -> float:
-        """The σ of depth up to which points are kept."""
+        """Limit of σ of depth in mm up to which points are kept."""
         return self.project.options.sigma_cut_mm
 
     def settings(self) -> dict[str, Any]:
-        """How the scan is measured, as the fields of a form."""
+        """Return the settings of the scan as the fields of a form."""
         rig = self.project.rig
         return {
             **values_of("scan", self.project.options, self._stripe_found),
@@ -310,7 +310,7 @@ class ScanPresenter(StepPresenter):
         (self.check_live if self.check_live.running else self.live).toggle()
 
     def do_capture(self) -> None:
-        """What the recording asks for is done: take the reference, start; or take this picture of the check."""
+        """Do what the recording asks for: take the reference, start; or take this picture of the check."""
         if self.check_live.running:
             self.check_live.capture()
         else:

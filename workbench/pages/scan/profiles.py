@@ -25,7 +25,7 @@ from workbench.work.tasks import Task
 
 
 class ProfilesPanel(QWidget):
-    """Asks how the faces stand where one line does not show it, measures, and says what came of it."""
+    """Panel that asks for the tilt of the faces where one line does not show it, measures, and shows the result."""
 
     def __init__(self, bench: Bench, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -62,7 +62,7 @@ class ProfilesPanel(QWidget):
         self._forget()
 
     def refresh(self, cannot: str) -> None:
-        """Show it for the project in force; `cannot` says why nothing can be measured now."""
+        """Show the state of the project; `cannot` is the reason why nothing can be measured now."""
         one = self._model.project.rig.lines == 1
         self.form.setVisible(one)
         self.form.set_values({"stage": self._stage, "tilt_sd": self._sd_deg or None})
@@ -74,7 +74,7 @@ class ProfilesPanel(QWidget):
         self._fit()
 
     def tilt(self) -> StatedTilt | None:
-        """What is stated of how the faces stand."""
+        """Return the stated tilt of the faces."""
         if self._model.project.rig.lines > 1 or not (self._stage or self._sd_deg):
             return None
         return StatedTilt(self._stage, math.radians(self._sd_deg) or None)

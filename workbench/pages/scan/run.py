@@ -27,7 +27,7 @@ DISPLAY_PX = 1280
 
 
 class ScanRun(QObject):
-    """Measures the recording of the project as it is when it starts, and records the result.
+    """Job that measures the recording of the project as it is at the start, and records the result.
 
     `seen` says of each frame so far how many points it has in the preview, and why it has none; `newest` is the last.
     """
@@ -70,18 +70,18 @@ class ScanRun(QObject):
 
     @property
     def problem(self) -> str:
-        """Why the last measurement of the project as it is failed, or ""."""
+        """Reason why the last measurement of the project as it is failed, or ""."""
         made_of, problem = self._problem
         return problem if problem and made_of == _key(self._model.project) else ""  # the key takes a millisecond
 
     def opened(self) -> None:
-        """Another project: stop, and forget."""
+        """Follow another project: stop, and forget."""
         self.cancel()
         self._task, self._problem, self.no_gauge = None, ("", ""), None
         self._forget(by_itself=False)
 
     def start(self, *, by_itself: bool = False) -> None:
-        """Measure."""
+        """Measure the recording, in the worker process."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.measuring:
             return
@@ -109,7 +109,7 @@ class ScanRun(QObject):
             self._task.cancel()
 
     def shown(self) -> None:
-        """The last `frame_seen` is on the screen; the next one is welcome."""
+        """Ask for the next frame: the last `frame_seen` is on the screen."""
         self._reading = False
         if self._latest is not None:
             self._read_picture()
@@ -169,7 +169,7 @@ class ScanRun(QObject):
 
 
 def short(name: str) -> str:
-    """The name of a frame within its folder."""
+    """Return the name of a frame within its folder."""
     return name.removeprefix(PART)
 
 

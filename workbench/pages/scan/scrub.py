@@ -14,7 +14,7 @@ from workbench.work import jobs
 
 
 class FrameScrub(QObject):
-    """One frame of the recording and its stages.
+    """Current frame of the recording and its stages.
 
     Frames are looked at only while somebody wants to see them (`active`); while they are gone through fast, those in
     between are passed over. `stages` stand until those of the next frame are there: `current` may be ahead of them.
@@ -29,7 +29,7 @@ class FrameScrub(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Another recording."""
+        """Forget all: another recording is used."""
         self.current, self.problem = "", ""
         self._chosen = False
         self.stages: FrameStages | None = None
@@ -37,7 +37,7 @@ class FrameScrub(QObject):
 
     @property
     def index(self) -> int:
-        """The place of the current frame; −1 if there is none."""
+        """Place of the current frame; −1 if there is none."""
         names = self._work.names
         return names.index(self.current) if self.current in names else -1
 
@@ -47,29 +47,29 @@ class FrameScrub(QObject):
         return self.stages is not None and self.stages.name == self.current
 
     def set_active(self, active: bool) -> None:
-        """Whether frames are to be seen now."""
+        """Set whether frames are to be shown now."""
         self._active = active
         self.follow()
 
     def choose(self, name: str) -> None:
-        """Look at this frame."""
+        """Choose this frame."""
         if name in self._work.names and name != self.current:
             self.current, self._chosen = name, True
             self.follow()
             self.changed.emit()
 
     def go_to(self, index: int) -> None:
-        """Look at the frame at this place."""
+        """Choose the frame at this place."""
         names = self._work.names
         if names:
             self.choose(names[min(max(index, 0), len(names) - 1)])
 
     def step(self, by: int) -> None:
-        """Look at the next frame but so many."""
+        """Go on by so many frames."""
         self.go_to(self.index + by)
 
     def follow(self) -> None:
-        """The frames or what they are looked at with may be others."""
+        """Follow a change of the frames or of the calibrations they are shown with."""
         names = self._work.names
         if self.current not in names:
             self.forget()

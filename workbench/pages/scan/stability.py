@@ -16,7 +16,7 @@ _PER_UNIT: Mapping[str, float] = {"turn": 1e6, "shift_mm": 1e3, "centre_px": 1.0
 
 
 class StabilityField(NamedTuple):
-    """One number that the page asks for."""
+    """Field of the page for one number."""
 
     key: str
     name: str
@@ -40,31 +40,31 @@ STABILITY: tuple[StabilityField, ...] = tuple(
 
 
 def usual_per_kelvin(one: StabilityField) -> float:
-    """What a rig of which nothing is stated is assumed to change for each kelvin, in the field's unit."""
+    """Return the change per kelvin that is assumed of a rig of which nothing is stated, in the field's unit."""
     return one.usual / USUAL_KELVINS
 
 
 def drift_key(rate: str, key: str) -> str:
-    """What the page calls a number of the "per_kelvin" or "per_hour" of a Drift."""
+    """Return the key on the page of a number of the "per_kelvin" or "per_hour" of a Drift."""
     return f"{rate}.{key}"
 
 
 def shown(stability: Stability | None) -> dict[str, float | None]:
-    """The values by key; None where nothing is stated."""
+    """Return the values by key; None where nothing is stated."""
     if stability is None:
         return dict.fromkeys(_PER_UNIT)
     return {key: round(getattr(stability, key) * factor, 6) for key, factor in _PER_UNIT.items()}
 
 
 def stated(stability: Stability | None, key: str, value: Any) -> Stability | None:
-    """The stability with one value changed; without a value nothing is stated any more, and all is assumed."""
+    """Change one value of the stability; without a value nothing is stated any more, and all is assumed."""
     if value is None:
         return None
     return replace(stability or DEFAULT_STABILITY, **{key: value / _PER_UNIT[key]})
 
 
 def drift_shown(drift: Drift) -> dict[str, float | None]:
-    """What is stated of each kelvin and hour, by key; None for what does not change so."""
+    """Return the stated drift per kelvin and hour, by key; None where there is none."""
     return {
         drift_key(rate, key): round(getattr(getattr(drift, rate), key) * factor, 6) or None
         for rate in ("per_kelvin", "per_hour")
@@ -73,18 +73,18 @@ def drift_shown(drift: Drift) -> dict[str, float | None]:
 
 
 def drift_stated(drift: Drift, key: str, value: Any) -> Drift:
-    """The drift with one value changed; without a value that does not change so."""
+    """Change one value of the drift; without a value there is none of that."""
     rate, name = key.split(".")
     return replace(drift, **{rate: replace(getattr(drift, rate), **{name: (value or 0.0) / _PER_UNIT[name]})})
 
 
 def rig_shown(rig: Rig) -> dict[str, float | None]:
-    """All that the page asks for of a rig's stability."""
+    """Return all values of a rig's stability that the page has."""
     return {**shown(rig.stability), **drift_shown(rig.drift), "calibrated_celsius": rig.air.calibrated}
 
 
 def rig_stated(rig: Rig, key: str, value: Any) -> Rig:
-    """The rig with one of these values changed."""
+    """Change one of these values of the rig."""
     if key == "calibrated_celsius":
         return replace(rig, air=replace(rig.air, calibrated=value))
     if "." in key:

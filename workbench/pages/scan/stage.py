@@ -15,7 +15,7 @@ from workbench.reasons import first, why
 
 
 class Stage(StrEnum):
-    """How far the scan is."""
+    """Stage of the scan."""
 
     NONE = "none"
     LISTING = "listing"
@@ -29,7 +29,7 @@ class Stage(StrEnum):
 
 
 class WhyNot(StrEnum):
-    """Why something cannot be done now; nothing: it can."""
+    """Reason why an action is not possible now; "": it is."""
 
     NOTHING = ""
     LIVE = "live"
@@ -48,7 +48,7 @@ class WhyNot(StrEnum):
 
 
 class Buttons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     measure: WhyNot
     cancel: WhyNot
@@ -57,7 +57,7 @@ class Buttons(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """What the stage rests on."""
+    """Facts from which stage and buttons follow."""
 
     live: bool
     """A scan is being recorded."""
@@ -87,7 +87,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """How far it is."""
+    """Derive the stage from the facts."""
     if facts.live:
         return Stage.LIVE
     if facts.measuring:
@@ -104,7 +104,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def buttons_of(facts: Facts) -> Buttons:
-    """What can be done."""
+    """Derive from the facts why each button is disabled."""
     cancel = WhyNot.NOTHING if facts.measuring else WhyNot.NOT_MEASURING
     return Buttons(_measure(facts), cancel, _record(facts), _take_check(facts))
 
@@ -142,7 +142,7 @@ def _take_check(facts: Facts) -> WhyNot:
 
 @dataclass(frozen=True, slots=True)
 class CheckFacts:
-    """What the Check card's buttons rest on."""
+    """Facts from which the buttons of the Check card follow."""
 
     taking: bool
     """Pictures of the check are being taken."""
@@ -159,7 +159,7 @@ class CheckFacts:
 
 
 class CheckButtons(NamedTuple):
-    """Why each button is grey; `readjust` is None where it is not shown."""
+    """Reason for each disabled button, or ""; `readjust` is None where it is not shown."""
 
     take: str
     """Take pictures; Stop while they are being taken."""
@@ -171,7 +171,7 @@ class CheckButtons(NamedTuple):
 
 
 def check_buttons(facts: CheckFacts) -> CheckButtons:
-    """What can be done on the Check card."""
+    """Derive from the facts why each button of the Check card is disabled."""
     taken = tr("Pictures of the check are being taken.") if facts.taking else ""
     cannot_start = "" if facts.taking else facts.cannot_take
     return CheckButtons(
@@ -184,7 +184,7 @@ def check_buttons(facts: CheckFacts) -> CheckButtons:
 
 
 def why_not_compare(*, comparing: bool, measuring: bool, cannot_write: str, measured: bool, outdated: bool) -> str:
-    """Why a length that was `measured`, and is not `outdated`, cannot be compared with an artefact."""
+    """Give the reason why a length that was `measured`, and is not `outdated`, cannot be compared with an artefact."""
     return first(
         why(comparing, tr("An artefact is being compared.")),
         why(measuring, tr("The scan is being measured.")),

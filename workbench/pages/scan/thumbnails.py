@@ -20,7 +20,7 @@ IN_SIGHT = 24
 
 
 class FrameThumbnails(QObject):
-    """`pictures` by the names of the frames; None for one that cannot be read."""
+    """Small `pictures` by the names of the frames; None for one that cannot be read."""
 
     changed = Signal()
 
@@ -30,19 +30,19 @@ class FrameThumbnails(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Another recording."""
+        """Forget all: another recording is used."""
         self.pictures: dict[str, Any] = {}
         self._of = self._source()
         self._wanted: dict[str, None] = {}
         self._making = False
 
     def follow(self) -> None:
-        """The recording may be another one."""
+        """Follow a change of the recording."""
         if self._of != self._source():
             self.forget()
 
     def want(self, name: str) -> None:
-        """A frame is in sight and has no picture yet."""
+        """Read the picture of a frame that is in sight and has none yet."""
         if name in self.pictures:
             return
         self._wanted.pop(name, None)

@@ -16,7 +16,7 @@ from workbench.pages.words import count, percent, sigma
 
 
 def facts(look: ShownScan | None) -> tuple[Fact, ...]:
-    """What is told of the scan."""
+    """Make the facts of the scan."""
     if look is None:
         return ()
     extent = np.ptp(look.points, axis=0) if len(look) else None
@@ -25,7 +25,7 @@ def facts(look: ShownScan | None) -> tuple[Fact, ...]:
 
 
 def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None, *, marked: bool = False) -> str:
-    """The second line of a frame in the list; `seen`: points in the preview, and why there are none."""
+    """Write the second line of a frame in the list; `seen`: points in the preview, and why there are none."""
     return " · ".join(filter(None, (tr("marked") if marked else "", _what_became(record, seen))))
 
 
@@ -41,7 +41,7 @@ def _what_became(record: FrameRecord | None, seen: tuple[int, Message | None] | 
 
 
 def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None) -> str:
-    """What is to be said of one frame."""
+    """Make the sentence on one frame."""
     start = tr("Frame {number} of {total} ({name})", number=place + 1, total=total, name=name)
     if stages is not None and stages.left_out and (record is None or record.used):
         start = tr("{frame}, left out by hand", frame=start)
@@ -69,10 +69,10 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
 
 
 def covered_sentence(share: float) -> str:
-    """How much of the surface there is."""
+    """Write how much of the surface is covered."""
     return tr("covered {share} of what was lit", share=percent(share))
 
 
 def speed_text(speed_px: float) -> str:
-    """How far the stripe moves from frame to frame."""
+    """Write how far the stripe moves from frame to frame."""
     return "" if math.isnan(speed_px) else tr("{speed:.0f} px/frame", speed=speed_px)

@@ -20,7 +20,7 @@ from workbench.work import jobs
 
 
 class ScanWork(QObject):
-    """Lists the frames, reads the accepted calibrations and the result.
+    """Reader of the list of frames, the accepted calibrations and the result.
 
     `frames` and `reference` are of the project as it is; None while they are being listed. `marked` are the
     frames that somebody marked, by their names in a set. `camera` and `fan` are the accepted ones, once
@@ -48,27 +48,27 @@ class ScanWork(QObject):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The frames by their names in a set, in the order of the recording."""
+        """Frames by their names in a set, in the order of the recording."""
         return tuple(f"{PART}{path.name}" for path in self.frames or ())
 
     def records(self) -> Mapping[str, FrameRecord]:
-        """What became of each frame by its name; nothing if the result is of another recording."""
+        """Return the record of each frame by its name; nothing if the result is of another recording."""
         return {record.name: record for record in self.look.frames} if self.look and self.of_this_recording else {}
 
     @property
     def of_this_recording(self) -> bool:
-        """Whether the result among the results is of the recording in use."""
+        """Whether the scan among the results is of the recording in use."""
         done = self._model.results.get("scan")
         return done is not None and done.rests_on.get("recording") == self._model.project.sources.scan
 
     def opened(self) -> None:
-        """Another project: forget; list its frames, read its calibrations and its result."""
+        """Load another project: list its frames, read its calibrations and its result."""
         self._forget()
         if self._model.folder is not None:
             self.follow()
 
     def follow(self) -> None:
-        """The project or its results are others: look at what has changed."""
+        """Follow a change of the project or its results: read what has changed."""
         if self._model.folder is None:
             return
         self._list_frames()
@@ -76,7 +76,7 @@ class ScanWork(QObject):
         self._read_result(self._model.folder)
 
     def look_again(self) -> None:
-        """Read the result again if another thickness of it was measured: its lower face is what the part stands on."""
+        """Read the result again if another thickness of it was measured: the part stands on its lower face."""
         if self._model.folder is not None and self.look is not None and self._thickness != self._thickness_now():
             self._looked = ""
             self._read_result(self._model.folder)

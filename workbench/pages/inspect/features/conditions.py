@@ -39,7 +39,7 @@ STEEL = Temperature(part_celsius=20.0, u_part_celsius=0.5, alpha=11.5e-6, u_alph
 
 
 class InspectConditions:
-    """What stands in the form; what says too little for the plan yet is kept here, with a sentence."""
+    """Fields of the form of the plan's conditions; incomplete ones are stored here, with a sentence."""
 
     def __init__(self, features: InspectFeatures) -> None:
         self._features, self._model = features, features.bench.model
@@ -49,12 +49,12 @@ class InspectConditions:
 
     @property
     def plan(self) -> InspectionPlan:
-        """Whose conditions they are."""
+        """Plan that has the conditions."""
         return self._features.plan
 
     @property
     def projects_folder(self) -> Path:
-        """Where the project of a master is looked for."""
+        """Folder in which the project of a master is searched."""
         return self._features.bench.settings.projects_folder
 
     @property
@@ -64,12 +64,12 @@ class InspectConditions:
 
     @property
     def master_is_on(self) -> bool:
-        """Whether a master is compared with, or being entered."""
+        """Whether the part is compared with a master, or one is being entered."""
         return bool(self.values()[WITH_MASTER])
 
     @property
     def in_short(self) -> str:
-        """What is set, in a few words, or ""."""
+        """Short summary of the conditions, or ""."""
         plan = self.plan
         said = [
             tr("3-2-1") if plan.frame is not None else "",
@@ -79,18 +79,18 @@ class InspectConditions:
         return joined(one for one in said if one)
 
     def values(self) -> dict[str, Any]:
-        """The fields as they stand in the form."""
+        """Return the fields as they are in the form."""
         self._follow()
         values = values_of(self.plan) | self._pending
         return values | {U_MEASURED: combined(values["budget"])}
 
     def complaint(self, group: str) -> str:
-        """What the fields of a group ("frame", "temperature", "master") still lack, or ""."""
+        """Say what the fields of a group ("frame", "temperature", "master") still lack, or ""."""
         self._follow()
         return self._complaints.get(group, "")
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change a field; as soon as its group says enough the plan has it."""
+        """Change a field; as soon as its group is complete it is put into the plan."""
         group = _group_of(key)
         if key == AT_20 and value:
             part = self._model.project.info.part_celsius
@@ -107,7 +107,7 @@ class InspectConditions:
         self._take(group, {key: value})
 
     def take_master(self, folder: Path) -> None:
-        """Take what was measured of the master from a project, or a folder of results; undoable."""
+        """Read the measured values of the master from a project, or a folder of results; undoable."""
         project, asked = self._model.folder, self.values()
 
         def done(master: Any) -> None:
@@ -173,7 +173,7 @@ def _group_of(key: str) -> str:
 
 
 def values_of(plan: InspectionPlan) -> dict[str, Any]:
-    """All fields of a plan's conditions; those of what it does not have are as they stand at first."""
+    """Return all fields of a plan's conditions; those it does not have have default values."""
     frame = plan.frame or PartFrame("", "")
     values: dict[str, Any] = {key: getattr(frame, key) for key in FRAME}
     values |= {AT_20: plan.temperature is not None, WITH_MASTER: plan.master is not None}
@@ -187,17 +187,17 @@ def values_of(plan: InspectionPlan) -> dict[str, Any]:
 
 
 def comparable(plan: InspectionPlan) -> tuple[str, ...]:
-    """Names of the features that can be compared with a master."""
+    """List the features that can be compared with a master, by name."""
     return tuple(one.name for one in plan.features if kind_of(one).expands)
 
 
 def frame_choices(plan: InspectionPlan, place: str) -> tuple[str, ...]:
-    """Names of the features that can be this of the part's coordinates."""
+    """List the features that can be this part of the coordinate system, by name."""
     return tuple(one.name for one in plan.features if kind_of(one).element in FRAME[place])
 
 
 def with_frame(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """The plan with part coordinates as the fields say; ValueError with a sentence if they say too little."""
+    """Set the plan's part coordinates from the fields; ValueError with a sentence if they are incomplete."""
     names = [str(values[key]) for key in FRAME]
     if not names[0]:
         return replace(plan, frame=None)
@@ -209,7 +209,7 @@ def with_frame(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPla
 
 
 def with_temperature(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """The plan with lengths at 20 °C as the fields say, or as measured."""
+    """Set the plan to lengths at 20 °C by the fields, or as measured."""
     if not values[AT_20]:
         return replace(plan, temperature=None)
     known: dict[str, Any] = {key: float(values[key]) for key in TEMPERATURES}
@@ -218,7 +218,7 @@ def with_temperature(plan: InspectionPlan, values: Mapping[str, Any]) -> Inspect
 
 
 def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """The plan compared with a master as the fields say; ValueError with a sentence if they say too little."""
+    """Set the plan's master from the fields; ValueError with a sentence if they are incomplete."""
     if not values[WITH_MASTER]:
         return replace(plan, master=None)
     if not str(values["name"]).strip():
@@ -250,7 +250,7 @@ def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPl
 
 
 def combined(budget: Sequence[tuple[str, float]]) -> float | None:
-    """What the causes of a master's measurement come to, in mm, as it is shown; None if none is known."""
+    """Combine the causes of a master's measurement, in mm, as it is shown; None if none is known."""
     return None if not budget else round(math.hypot(*(u for _, u in budget)), 6)
 
 

@@ -25,7 +25,7 @@ LONGEST = 5000.0
 
 
 class ConditionsPanel(QWidget):
-    """The form is made anew where other features can be chosen, or a group is switched on or off."""
+    """Panel of the conditions; the form is made anew where choices change or a group is switched on or off."""
 
     def __init__(self, conditions: InspectConditions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -44,7 +44,7 @@ class ConditionsPanel(QWidget):
         self._column.addWidget(self._inside)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         conditions, plan = self._conditions, self._conditions.plan
         if not self.isVisible():
             return

@@ -29,7 +29,7 @@ NO_PICTURE = (1280, 960)
 
 
 class InspectFeatureEdit:
-    """What stands in the form.
+    """Fields of the form of the chosen feature.
 
     Limits whose other half is missing, and values that cannot be, are kept here until they can be put into the plan.
     """
@@ -47,12 +47,12 @@ class InspectFeatureEdit:
         return plan.feature(chosen) if chosen in plan.names else None
 
     def values(self) -> dict[str, Any]:
-        """The fields as they stand in the form."""
+        """Return the fields as they are in the form."""
         self._follow()
         return {} if self.spec is None else fields.values_of(self.spec) | self._pending
 
     def complaint(self, key: str) -> str:
-        """What is wrong with a field, or ""."""
+        """Say what is wrong with a field, or ""."""
         self._follow()
         return self._complaints.get(key, "")
 
@@ -69,7 +69,7 @@ class InspectFeatureEdit:
         features.measure_first()
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change a field; what cannot be is kept in the form with a sentence, and the plan stays as it was."""
+        """Change a field; an impossible value stays in the form with a sentence, and the plan stays as it was."""
         self._follow()
         spec = self.spec
         if spec is None:
@@ -102,7 +102,7 @@ class InspectFeatureEdit:
         self._put(spec, changed)
 
     def set_region(self, place: int, corners: ArrayLike) -> None:
-        """Take the points seen inside a polygon of the picture; undoable."""
+        """Use the points seen inside a polygon of the picture; undoable."""
         spec = self.spec
         if spec is None or place >= len(spec.regions):
             return
@@ -110,7 +110,7 @@ class InspectFeatureEdit:
         self._put(spec, fields.with_region(spec, place, region))
 
     def set_line(self, ends: ArrayLike) -> None:
-        """Lay the chosen section between two places of the picture; undoable."""
+        """Put the chosen section between two places of the picture; undoable."""
         spec = self.spec
         if spec is not None and spec.section is not None:
             first, second = np.asarray(ends)
@@ -119,15 +119,15 @@ class InspectFeatureEdit:
 
     @property
     def meant(self) -> str:
-        """What points chosen in 3D stand for: the plane face among them, or ("") all of them."""
+        """Meaning of points chosen in 3D: the plane face among them, or ("") all of them."""
         return "upper" if self.spec is not None and kind_of(self.spec).automatic == "numbered" else ""
 
     def region_name(self, place: int) -> str:
-        """What a region of the chosen feature is called in the pictures."""
+        """Return the name of a region of the chosen feature in the pictures."""
         return f"{REGION} {place}"
 
     def place_of(self, name: str) -> int:
-        """The place of the region called so."""
+        """Return the place of the region of this name."""
         return int(name.removeprefix(REGION))
 
     def set_nominal(self, path: Path) -> None:
@@ -137,7 +137,7 @@ class InspectFeatureEdit:
             self.set_value("nominal", stored_source(folder, path))
 
     def add_cut(self) -> None:
-        """One measurement more in the chosen section, where its profile has levels; undoable."""
+        """Add one measurement to the chosen section, where its profile has levels; undoable."""
         spec = self.spec
         if spec is None:
             return
@@ -150,7 +150,7 @@ class InspectFeatureEdit:
             self._put(spec, fields.with_new_cut(spec, at))
 
     def remove_cut(self, place: int) -> None:
-        """One measurement less in the chosen section; undoable."""
+        """Remove one measurement from the chosen section; undoable."""
         if self.spec is not None:
             self._put(self.spec, fields.without_cut(self.spec, place))
 

@@ -51,7 +51,7 @@ missing; of what is beyond, the list takes this share."""
 
 
 class FeaturesPanel(QWidget):
-    """List and buttons, of one height whatever comes of them.
+    """Panel with the list of features and its buttons, of constant height.
 
     The form of the chosen feature, how far the features are, and the notes on their results stand where whoever shows
     the panel has room for them.
@@ -102,12 +102,12 @@ class FeaturesPanel(QWidget):
         self.form.draw.connect(self.draw)
 
     def fit(self, page_height: int) -> None:
-        """Take the room that a page of this height has for the list."""
+        """Set the height of the list for a page of this height."""
         self._page_height = page_height
         self._fit_list()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         features = self._features
         some = bool(features.plan.features)
         self.list.setVisible(some or self._scan.view is not None)
@@ -417,7 +417,7 @@ class _List(TreeList):
 
 
 class TemplatesButton(QPushButton):
-    """A menu: save the plan as a template, take one from a file, or one of those used last."""
+    """Menu: save the plan as a template, take one from a file, or one of those used last."""
 
     def __init__(self, templates: InspectTemplates, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -438,7 +438,7 @@ class TemplatesButton(QPushButton):
         self.setMenu(menu)
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         why_not, paths = self._templates.cannot_save, self._templates.recent
         enable(self.save, why_not, tr("Write these features, their regions and limits to a file"))
         if paths == self._paths:

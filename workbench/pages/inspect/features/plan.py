@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FeaturesFacts:
-    """What their buttons rest on."""
+    """Facts from which the buttons follow."""
 
     no_scan: str
     """Why there is no scan to be measured."""
@@ -47,7 +47,7 @@ class FeaturesFacts:
 
 
 class FeaturesButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     measure: str
     remove: str
@@ -58,7 +58,7 @@ class FeaturesButtons(NamedTuple):
 
 
 def features_buttons(facts: FeaturesFacts) -> FeaturesButtons:
-    """What can be done with the features."""
+    """Derive from the facts why each button is disabled."""
     none = "" if facts.count else tr("Add a feature first.")
     choose = "" if facts.place >= 0 else tr("Choose a feature first.")
     return FeaturesButtons(
@@ -82,7 +82,7 @@ REMEMBERING = {"progress": "progress", "memory": "memory"}
 
 
 class InspectFeatures(QObject):
-    """The plan of the project, what it gave on this scan, and which feature is chosen."""
+    """Plan of the project, its results on this scan, and the chosen feature."""
 
     changed = Signal()
 
@@ -97,18 +97,18 @@ class InspectFeatures(QObject):
 
     @property
     def callouts_moved(self) -> Mapping[str, tuple[float, float]]:
-        """How far (right, down) in pixels the callout of a feature was dragged from its place."""
+        """Distance (right, down) in px by which the callout of a feature was dragged."""
         return self.model.project.callouts
 
     # ---- the plan
 
     @property
     def plan(self) -> InspectionPlan:
-        """What is to be measured."""
+        """Plan of the project."""
         return self.model.project.inspection
 
     def free_name(self, kind: str, taken: Sequence[str] = ()) -> str:
-        """A name for a new feature of a kind that no other has, and that is not `taken`: "plane 2"."""
+        """Make a name for a new feature of a kind that no other has, and that is not `taken`: "plane 2"."""
         return self._numbered(words.usual_name(kind), 1, taken)
 
     def _numbered(self, name: str, number: int, taken: Sequence[str] = ()) -> str:
@@ -118,7 +118,7 @@ class InspectFeatures(QObject):
         return f"{name} {number}"
 
     def complaint(self, spec: FeatureSpec, instead_of: str = "") -> str:
-        """Why the plan would be wrong with this feature (in place of another), or ""."""
+        """Give the reason why the plan would be wrong with this feature (in place of another), or ""."""
         try:
             self._with(spec, instead_of).ordered()
         except InputError as error:
@@ -133,13 +133,13 @@ class InspectFeatures(QObject):
         self.put_plan(plan, label, {instead_of: spec.name})
 
     def add(self, specs: Sequence[FeatureSpec]) -> None:
-        """Add features, the last one made of the others, and choose that; one edit, undoable."""
+        """Add features, the last one made of the others, and choose it; one edit, undoable."""
         self.chosen = specs[-1].name
         plan = replace(self.plan, features=(*self.plan.features, *specs))
         self.put_plan(plan, tr("add {name}", name=self.chosen))
 
     def duplicate(self, name: str) -> None:
-        """Put a copy of a feature below it and choose that; undoable."""
+        """Insert a copy of a feature below it and choose it; undoable."""
         if name not in self.plan.names:
             return
         spec, place = self.plan.feature(name), self.plan.names.index(name) + 1
@@ -150,7 +150,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=features), tr("duplicate {name}", name=name))
 
     def remove(self, name: str) -> None:
-        """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
+        """Remove a feature from the plan; undoable. One that others rest on stays, and a notice says which."""
         why_not = self.cannot_remove(name)
         if why_not:
             self.bench.notices.warning(why_not)
@@ -162,7 +162,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {name}", name=name))
 
     def cannot_remove(self, name: str) -> str:
-        """Why a feature cannot be taken out, or "": what rests on it."""
+        """Give the reason why a feature cannot be removed, or "": the features that rest on it."""
         frame = self.plan.frame.names if self.plan.frame is not None else ()
         resting = [one.name for one in self.plan.features if name in one.needs]
         if name in frame:
@@ -183,7 +183,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=tuple(features)), tr("move {name}", name=name))
 
     def put_plan(self, plan: InspectionPlan, label: str, renamed: Mapping[str, str] = NO_OTHERS) -> None:
-        """Measure this plan from now on, in which features are `renamed`; undoable. Callouts stay where they are."""
+        """Replace the plan by this one, in which features are `renamed`; undoable. Callouts stay where they are."""
         moved = {renamed.get(name, name): to for name, to in self.callouts_moved.items()}
         callouts = {name: to for name, to in moved.items() if name in plan.names or name not in self.plan.names}
         self.model.edit(label, replace(self.model.project, inspection=plan, callouts=callouts))
@@ -199,7 +199,7 @@ class InspectFeatures(QObject):
 
     @property
     def buttons(self) -> FeaturesButtons:
-        """What can be done with the features and the chosen one."""
+        """Reason for each disabled button, for the chosen feature."""
         names = self.plan.names
         return features_buttons(
             FeaturesFacts(
@@ -215,7 +215,7 @@ class InspectFeatures(QObject):
 
     @property
     def up_to_date(self) -> bool:
-        """Whether what was measured is of this plan and this scan."""
+        """Whether the results are of this plan and this scan."""
         return up_to_date("inspection", self.model.project, self.model.results)
 
     def measure(self) -> None:
@@ -233,12 +233,12 @@ class InspectFeatures(QObject):
         self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
     def measure_first(self) -> None:
-        """Measure a plan that has not been measured yet, if it can be; later, every edit is measured by itself."""
+        """Measure a plan that has not been measured yet, if it can be; later, every edit is measured automatically."""
         if "inspection" not in self.model.results:
             self.measure()
 
     def follow(self, before: InspectionPlan) -> None:
-        """The plan was edited, or an edit undone: what was measured once is measured anew."""
+        """Follow an edit of the plan, or its undo: what was measured once is measured anew."""
         if self.plan == before:
             return
         self.problem = ""
@@ -247,7 +247,7 @@ class InspectFeatures(QObject):
         self._measure_again()
 
     def look(self) -> None:
-        """Have what was measured earlier drawn, if it is still true of this plan and this scan."""
+        """Draw the earlier results, if they are still of this plan and this scan."""
         folder = self.model.folder
         if folder is None or self.measuring or not self.up_to_date or self.shown is not None:
             return
@@ -261,33 +261,36 @@ class InspectFeatures(QObject):
 
     @property
     def shown(self) -> ShownInspection | None:
-        """What the plan gave, if that is still what it would give now."""
+        """Results of the plan, if they are still valid."""
         return self._shown if self._shown_for == self._wanted() else None
 
     @property
     def pose_camera_part(self) -> Pose | None:
-        """Part coordinates into the camera frame, if they are known and still those of this plan."""
+        """Pose from part to camera coordinates, if it is known and still of this plan."""
         frame = self.plan.frame
         if frame is None or self._shown is None or self._shown_for is None or self._shown_for[0].frame != frame:
             return None
         return None if any(self.result(name) is None for name in frame.names) else self._shown.pose_camera_part
 
     def result(self, name: str) -> ShownFeature | None:
-        """What a feature gave; None if it is not measured, or something it depends on has changed since."""
+        """Return the result of a feature; None if it is not measured, or something it depends on has changed since."""
         found = self._earlier(name)
         if found is None or self._shown_for is None:
             return None
         return found if self._shown_for[0].asks_the_same(name, self.plan) else None
 
     def outdated(self, name: str) -> ShownFeature | None:
-        """What a feature gave on this scan before it, or what it rests on, was changed; None if that is still true."""
+        """Return the result of a feature on this scan before it, or what it rests on, was changed.
+
+        None if still valid.
+        """
         found = self._earlier(name)
         if found is None or name not in self.plan.names or found.kind != self.plan.feature(name).kind:
             return None
         return None if self.result(name) is found else found
 
     def rests_on(self, name: str) -> tuple[list[ShownFeature], dict[str, list[ShownFeature]]]:
-        """What points a feature is made of: those of itself or of its parts, and of its datums by their letters.
+        """List the features whose points a feature is made of: itself or its parts, and its datums by their letters.
 
         A part that is made of others itself stands for theirs. What is not measured is left out.
         """
@@ -308,20 +311,20 @@ class InspectFeatures(QObject):
         return [one for one in found if one is not None]
 
     def choose(self, name: str) -> None:
-        """Show the points this feature used; "" for none."""
+        """Choose a feature and show its points; "" for none."""
         if name != self.chosen:
             self.chosen = name
             self.changed.emit()
 
     def move_callout(self, name: str, moved: tuple[float, float] | None) -> None:
-        """Keep where a feature's callout was dragged; None: where there is room. undoable."""
+        """Store the place to which a feature's callout was dragged; None: where there is room. undoable."""
         callouts = {other: to for other, to in self.callouts_moved.items() if other != name}
         if moved is not None:
             callouts[name] = moved
         self.model.edit(tr("move the plate of a result"), replace(self.model.project, callouts=callouts))
 
     def forget(self) -> None:
-        """Another project is open: nothing of it has been measured here."""
+        """Forget all results: another project is open."""
         self._shown, self._shown_for = None, None
         self.problem = self.chosen = ""
 

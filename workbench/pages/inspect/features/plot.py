@@ -26,7 +26,7 @@ LEAST_CHART_PX, ROWS_PX = 260, 320
 
 
 class PlotTab(QWidget):
-    """A chart, and beside it what it says in numbers."""
+    """Tab with a chart, and beside it its numbers."""
 
     def __init__(self, features: InspectFeatures, edit: InspectFeatureEdit, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -41,7 +41,7 @@ class PlotTab(QWidget):
         in_column(self.words, (both, 1), on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
-        """Show what the presenter says now; drawn anew only for another feature or result."""
+        """Show the state of the presenter; drawn anew only for another feature or result."""
         features = self._features
         result = features.result(features.chosen)
         wanted = (features.chosen, result)

@@ -19,24 +19,24 @@ MOST_RECENT = 6
 
 
 class InspectTemplates:
-    """Files of plans, the ones used last first."""
+    """Templates: files of plans, the ones used last first."""
 
     def __init__(self, features: InspectFeatures) -> None:
         self._features, self._bench, self._model = features, features.bench, features.model
 
     @property
     def recent(self) -> list[Path]:
-        """The templates used last, the newest first; those that are gone are left out."""
+        """Templates used last, the newest first; those that are gone are left out."""
         paths = [Path(line) for line in self._bench.settings.text(RECENT, "").split("\n") if line]
         return [path for path in paths if path.is_file()]
 
     @property
     def cannot_save(self) -> str:
-        """Why there is no template to be made of this plan, or ""."""
+        """Reason why no template can be made of this plan, or ""."""
         return self._features.buttons.save
 
     def place(self) -> Path:
-        """Where a template is proposed to be saved: beside the last one, or beside the projects."""
+        """Return the proposed path of a new template: beside the last one, or beside the projects."""
         recent = self.recent
         folder = recent[0].parent if recent else self._bench.settings.projects_folder
         name = self._model.project.info.part or "plan"
@@ -59,7 +59,7 @@ class InspectTemplates:
         )
 
     def take(self, path: Path) -> None:
-        """Measure the plan in this file from now on, and at once if there is a scan; undoable."""
+        """Replace the plan by that in this file, and measure it if there is a scan; undoable."""
         folder = self._model.folder
         if folder is None:
             return

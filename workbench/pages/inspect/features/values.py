@@ -52,7 +52,7 @@ def new_feature(
     nominal: str = "",
     section: Section | None = None,
 ) -> FeatureSpec:
-    """A feature with what is usual: the last two elements; `section`, or a cut across the picture's middle (`size`)."""
+    """Make a feature with default values: of the last two elements; with `section`, or a cut across the part."""
     made, found = FeatureSpec(name, kind), kind_named(kind)
     if found.made_of:
         made = replace(made, of=elements(plan, found)[-found.made_of :])
@@ -68,12 +68,12 @@ def new_feature(
 
 
 def elements(plan: InspectionPlan, kind: FeatureKind) -> tuple[str, ...]:
-    """Names of the features that one of a kind can be made of."""
+    """List the features that one of a kind can be made of, by name."""
     return tuple(one.name for one in plan.features if kind_of(one).element in kind.made_from)
 
 
 def why_not(kind: str, plan: InspectionPlan) -> str:
-    """Why a feature of this kind cannot be added to the plan, or ""."""
+    """Give the reason why a feature of this kind cannot be added to the plan, or ""."""
     found = kind_named(kind)
     if len(elements(plan, found)) >= found.made_of:
         return ""
@@ -85,7 +85,7 @@ def why_not(kind: str, plan: InspectionPlan) -> str:
 
 
 def values_of(spec: FeatureSpec) -> dict[str, Any]:
-    """All fields of a feature; what it does not have is not among them."""
+    """Return all fields that a feature has."""
     values: dict[str, Any] = {"name": spec.name}
     values |= {f"of {place}": name for place, name in enumerate(spec.of)}
     if not kind_of(spec).made_of:
@@ -108,7 +108,7 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
 
 
 def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
-    """The feature with one field changed; ValueError with a sentence if that cannot be."""
+    """Change one field of the feature; ValueError with a sentence if that is impossible."""
     group, _, rest = key.partition(" ")
     if key == "name":
         return replace(spec, name=str(value).strip())
@@ -136,12 +136,12 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
 
 
 def own_regions(spec: FeatureSpec) -> tuple[Region, ...]:
-    """Where its points are; none for what is made of other features."""
+    """Return the regions of its points; none for a feature made of others."""
     return () if kind_of(spec).made_of else spec.regions
 
 
 def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
-    """The feature with another region at this place."""
+    """Replace the region at this place."""
     return replace(spec, regions=(*spec.regions[:place], region, *spec.regions[place + 1 :]))
 
 
@@ -149,7 +149,10 @@ def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
 
 
 def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
-    """The limits of a result: nominal value and permitted deviations in mm or degrees, None where there is none."""
+    """Return the limits of a result: nominal value and permitted deviations in mm or degrees.
+
+    None where there is none.
+    """
     limits = dict(spec.limits).get(result)
     keys = [f"limits {side} {result}" for side in SIDES]
     if limits is None:
@@ -159,7 +162,7 @@ def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
 
 
 def with_limits(spec: FeatureSpec, result: str, values: Mapping[str, float | None]) -> FeatureSpec:
-    """The feature with a result's limits, by the keys of `limits_values`; ValueError with a sentence if one lacks."""
+    """Set a result's limits, by the keys of `limits_values`; ValueError with a sentence if one is missing."""
     nominal, lower, upper = (values.get(f"limits {side} {result}") for side in SIDES)
     kept = tuple(one for one in spec.limits if one[0] != result)
     kind = results_of(spec)[result]
@@ -215,7 +218,7 @@ def _sourced(source: str) -> Region:
 
 
 def around(source: str, low: Place, high: Place) -> Region:
-    """The sphere or the box of part coordinates that reaches round a box."""
+    """Make the sphere or the box of part coordinates that encloses a box."""
     if source == BOX:
         return InBox(low, high)
     (x, y, z), radius = ((a + b) / 2 for a, b in zip(low, high, strict=True)), math.dist(low, high) / 2
@@ -231,7 +234,7 @@ def _with_sphere(spec: FeatureSpec, place: int, field: str, value: Any) -> Featu
 
 
 def with_box(spec: FeatureSpec, place: int, values: Mapping[str, Any]) -> FeatureSpec:
-    """The feature with a box by both its corners, as they stand in the fields; ValueError with a sentence."""
+    """Set a box by both its corners, as they are in the fields; ValueError with a sentence."""
     low, high = (_place(str(values[f"{corner} {place}"])) for corner in CORNERS)
     if any(a >= b for a, b in zip(low, high, strict=True)):
         raise ValueError(tr("Each of the smallest x, y and z is to be below the largest one."))
@@ -354,7 +357,7 @@ def _with_cut(spec: FeatureSpec, section: Section, place: int, field: str, value
 def with_new_cut(
     spec: FeatureSpec, stretches: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 10.0), (20.0, 30.0))
 ) -> FeatureSpec:
-    """A section with one measurement more, the height over the second of two `stretches` above the first."""
+    """Add one measurement to a section: the height over the second of two `stretches`."""
     if spec.section is None:
         return spec
     names, number = {cut.name for cut in spec.section.cuts}, 1
@@ -365,7 +368,7 @@ def with_new_cut(
 
 
 def without_cut(spec: FeatureSpec, place: int) -> FeatureSpec:
-    """A section with one measurement less, and without what was asked of it."""
+    """Remove one measurement from a section, with its limits."""
     if spec.section is None:
         return spec
     cuts, gone = spec.section.cuts, spec.section.cuts[place].name

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RepeatsFacts:
-    """What their buttons rest on."""
+    """Facts from which the buttons follow."""
 
     no_surface: str
     """Why no scan is shown."""
@@ -49,7 +49,7 @@ class RepeatsFacts:
 
 
 class RepeatsButtons(NamedTuple):
-    """Why each button is grey."""
+    """Reason for each disabled button, or ""."""
 
     add: str
     remove: str
@@ -57,7 +57,7 @@ class RepeatsButtons(NamedTuple):
 
 
 def repeats_buttons(facts: RepeatsFacts) -> RepeatsButtons:
-    """What can be done with the repeats."""
+    """Derive from the facts why each button is disabled."""
     none = "" if facts.some else tr("There are no repeats yet.")
     choose = "" if facts.chosen else tr("Choose a repeat in the table first.")
     return RepeatsButtons(_why_not_add(facts), none or choose, none)
@@ -81,7 +81,7 @@ def _why_not_add(facts: RepeatsFacts) -> str:
 
 
 class InspectRepeats(QObject):
-    """The series of repeats in the project; every change is undoable."""
+    """Series of repeats in the project; every change is undoable."""
 
     changed = Signal()
 
@@ -94,21 +94,21 @@ class InspectRepeats(QObject):
 
     @property
     def all(self) -> tuple[Repeat, ...]:
-        """The repeats in the order they were added."""
+        """Repeats in the order they were added."""
         return self._model.project.repeats
 
     @property
     def spec(self) -> GaugeSpec:
-        """Nominal value and tolerance they are judged by."""
+        """Nominal value and tolerance for judging them."""
         return self._faces.spec
 
     @property
     def can_add(self) -> str:
-        """Why the thickness shown cannot be added, or ""."""
+        """Reason why the thickness shown cannot be added, or ""."""
         return self.buttons().add
 
     def buttons(self, *, chosen: bool = False) -> RepeatsButtons:
-        """What can be done with them, where one of them is `chosen` or none."""
+        """Return the reason for each disabled button, where one of them is `chosen` or none."""
         scan = self._scan
         return repeats_buttons(
             RepeatsFacts(
@@ -142,26 +142,26 @@ class InspectRepeats(QObject):
         self._put((*self.all, repeat), tr("add a repeat"))
 
     def remove(self, rows: Sequence[int]) -> None:
-        """Take repeats out of the series; undoable."""
+        """Remove repeats from the series; undoable."""
         kept = tuple(repeat for row, repeat in enumerate(self.all) if row not in set(rows))
         count = len(self.all) - len(kept)
         label = tr("remove a repeat") if count == 1 else tr("remove {count} repeats", count=count)
         self._put(kept, label)
 
     def statistics(self) -> RepeatStatistics | None:
-        """What they say together; None if there are none."""
+        """Compute the statistics of the repeats; None if there are none."""
         if not self.all:
             return None
         return repeat_statistics([repeat.thickness_mm for repeat in self.all], self.spec.nominal_mm)
 
     @property
     def type1(self) -> Type1Study | None:
-        """The type-1 study of the repeats against the tolerance; None as long as there is none."""
+        """Type-1 study of the repeats against the tolerance; None as long as there is none."""
         return self._type1 if self._type1_of == self._type1_wanted() else None
 
     @property
     def no_type1(self) -> str:
-        """Why there is no type-1 study, or ""."""
+        """Reason why there is no type-1 study, or ""."""
         spec = self.spec
         if spec.nominal_mm is None or spec.tolerance_mm is None:
             return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
@@ -170,7 +170,7 @@ class InspectRepeats(QObject):
         return ""
 
     def study(self) -> None:
-        """Have the type-1 study worked out, unless it is there or under way."""
+        """Compute the type-1 study, unless it is there or being computed."""
         wanted, spec = self._type1_wanted(), self.spec
         if self.no_type1 or spec.tolerance_mm is None or wanted in (self._type1_of, self._asked):
             return
@@ -207,7 +207,7 @@ class InspectRepeats(QObject):
         return doubted_among((repeat.scan, tuple(map(Doubt.named, repeat.doubts))) for repeat in self.all)
 
     def calibrations(self) -> int:
-        """With how many different calibrations they were measured."""
+        """Count the different calibrations they were measured with."""
         return len({repeat.calibration_id for repeat in self.all})
 
     def _put(self, repeats: tuple[Repeat, ...], label: str) -> None:

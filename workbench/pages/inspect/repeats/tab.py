@@ -31,7 +31,7 @@ CALIBRATION = 3
 
 
 class RepeatsTab(QWidget):
-    """All repeats of the project and what they say together."""
+    """Tab with all repeats of the project and their statistics."""
 
     def __init__(self, repeats: InspectRepeats, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -79,7 +79,7 @@ class RepeatsTab(QWidget):
         in_column(split, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         repeats, spec = self._repeats, self._repeats.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
