@@ -27,7 +27,7 @@ Level = Literal["", "good", "warn", "bad"]
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """How one meaning is drawn."""
+    """Mark by which one meaning is drawn."""
 
     colour: str
     symbol: Symbol = "o"
@@ -84,19 +84,19 @@ _SIGMA_STOPS = "6f7ff0 4f9be0 3bb5b8 4fc987 95d94a fde725"
 
 
 def fan_colour(line: int) -> str:
-    """The colour of fan line 1, 2, 3, …; they repeat."""
+    """Return the colour of fan line 1, 2, 3, …; they repeat."""
     return FAN[(line - 1) % len(FAN)]
 
 
 def to_colour(colour: ColourLike) -> QColor:
-    """Any way of naming a colour as a QColor."""
+    """Convert any way of naming a colour to a QColor."""
     if isinstance(colour, QColor):
         return colour
     return QColor(colour) if isinstance(colour, str) else QColor(*colour)
 
 
 def to_rgba(colour: ColourLike) -> tuple[int, int, int, int]:
-    """Any way of naming a colour as four numbers, 0 … 255."""
+    """Convert any way of naming a colour to four numbers, 0 … 255."""
     if isinstance(colour, str):
         return _named(colour)
     chosen = to_colour(colour)
@@ -112,7 +112,7 @@ def _named(name: str) -> tuple[int, int, int, int]:
 
 @cache
 def sigma_table() -> NDArray[np.uint8]:
-    """The colours of σ from nought (blue, good) to the limit (yellow): (256, 4)."""
+    """Make the colours of σ from 0 (blue, good) to the limit (yellow): (256, 4)."""
     stops = np.array([list(bytes.fromhex(stop)) for stop in _SIGMA_STOPS.split()], dtype=np.float64)
     at = np.linspace(0, len(stops) - 1, 256)
     columns = [np.interp(at, np.arange(len(stops)), stops[:, i]) for i in range(3)]

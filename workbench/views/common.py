@@ -15,13 +15,13 @@ from workbench.views.colours import Level
 
 
 def dress(widget: QWidget, sheet: str) -> None:
-    """Set a style sheet unless it is set: setting one tells the widget of a changed palette, where it is set again."""
+    """Set a style sheet unless it is set: setting one makes the widget update its palette, where it is set again."""
     if widget.styleSheet() != sheet:
         widget.setStyleSheet(sheet)
 
 
 def dress_edged(widget: QWidget, colour: str) -> None:
-    """A panel with an edge at its left in one of the theme's colours."""
+    """Style a panel with an edge at its left in one of the theme's colours."""
     s = shades()
     dress(
         widget,
@@ -31,12 +31,12 @@ def dress_edged(widget: QWidget, colour: str) -> None:
 
 
 def grade_words() -> dict[Level, str]:
-    """What each level is called wherever something is graded."""
+    """Return the displayed word of each level of a grade."""
     return {"": "", "good": tr("good"), "warn": tr("fair"), "bad": tr("poor")}
 
 
 class IconLabel(QLabel):
-    """An icon of so many pixels that follows the theme."""
+    """Label with an icon of so many pixels that follows the theme."""
 
     def __init__(self, side: int, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -46,7 +46,7 @@ class IconLabel(QLabel):
         self.setFixedWidth(side)
 
     def show_icon(self, name: str, colour: str = "") -> None:
-        """Show this one; without one it takes no height."""
+        """Show this icon; without one the label takes no height."""
         if (name, colour) != self.shown:
             self.shown = name, colour
             self.updateGeometry()
@@ -68,12 +68,14 @@ class IconLabel(QLabel):
 
 
 def inner_edge(widget: QWidget) -> QRectF:
-    """Where a line of one pixel frames a widget: its middle is half a pixel inside, however fine the screen."""
+    """Return the line of one pixel that frames a widget: its middle is half a pixel inside, however fine the screen."""
     return QRectF(widget.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
 
 
 def draw_focus(widget: QWidget) -> None:
-    """Frame a widget that has the focus; to be called while it is painted. It leaves a margin of a pixel for it."""
+    """Draw a frame round a widget that has the focus; to be called while it is painted. It leaves a margin of a
+    pixel for it.
+    """
     if widget.hasFocus():
         painter = QPainter(widget)
         painter.setPen(QPen(QColor(shades().muted), 1.0, Qt.PenStyle.DashLine))  # the accent is for what is chosen
@@ -82,12 +84,12 @@ def draw_focus(widget: QWidget) -> None:
 
 
 def copy_picture(widget: QWidget) -> None:
-    """Put what it shows on the clipboard."""
+    """Copy a picture of the widget to the clipboard."""
     QGuiApplication.clipboard().setPixmap(widget.grab())
 
 
 def save_picture(widget: QWidget, title: str, name: str) -> None:
-    """Ask for a file and write what it shows; `title` is the question's, `name` the file's at first."""
+    """Ask for a file and write a picture of the widget; `title` is the question's, `name` the file's at first."""
     kinds = tr("Picture (*.png)")
     path, _ = QFileDialog.getSaveFileName(widget, title, name, kinds)
     if path:
@@ -95,12 +97,12 @@ def save_picture(widget: QWidget, title: str, name: str) -> None:
 
 
 def breakable(path: str) -> str:
-    """A path that can be wrapped after each separator."""
+    """Make a path that can be wrapped after each separator."""
     return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
 
 
 class WheelIfFocused:
-    """A field that the wheel changes only while it has the focus; else the wheel scrolls what is around the field."""
+    """Field that the wheel changes only while it has the focus; else the wheel scrolls what is around it."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -116,15 +118,15 @@ class WheelIfFocused:
 
 
 class Choice(WheelIfFocused, QComboBox):
-    """One of several."""
+    """Choice of one of several."""
 
 
 class Slider(WheelIfFocused, QSlider):
-    """A place between two ends."""
+    """Slider between two ends."""
 
 
 class SpinBox(WheelIfFocused, QDoubleSpinBox):
-    """A number as the window's language writes it; it can be typed with either decimal sign and either minus."""
+    """Number in the window's language; it can be typed with either decimal sign and either minus."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)

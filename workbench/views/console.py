@@ -50,7 +50,7 @@ def console_missing() -> bool:
 
 
 class ConsoleWindow(QWidget):
-    """The console of one project.
+    """Window with the console of one project.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class ConsoleWindow(QWidget):
             self._next.start()
 
     def set_outdated(self, outdated: bool) -> None:
-        """Whether the project has changed since it was opened here."""
+        """Set whether the project has changed since it was opened here."""
         self._outdated = outdated
         self._show_state()
 

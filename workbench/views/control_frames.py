@@ -25,7 +25,7 @@ LETTERS = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A row of boxes: a symbol, unless it is a datum's letter alone, and texts."""
+    """Feature control frame, a row of boxes: a symbol, unless it is a datum's letter alone, and texts."""
 
     symbol: ToleranceSymbol | None
     cells: tuple[str, ...]
@@ -35,7 +35,7 @@ class Frame:
 
 
 class FramesIcon(QIconEngine):
-    """Frames beside each other as an icon of their own size, in the colours of the theme in use."""
+    """Icon of frames beside each other, of their own size, in the colours of the theme in use."""
 
     def __init__(self, frames: Sequence[Frame]) -> None:
         super().__init__()
@@ -51,7 +51,7 @@ class FramesIcon(QIconEngine):
 
     @property
     def size(self) -> QSize:
-        """In logical pixels."""
+        """Size in logical pixels."""
         width = sum(map(sum, self._widths)) + GAP * (len(self._frames) - 1)
         return QSize(round(width) + 1, HEIGHT + 1)
 
@@ -94,7 +94,7 @@ class FramesIcon(QIconEngine):
 
 
 class FramesMark(QWidget):
-    """Frames in a form; of one height whatever it shows."""
+    """Frames in a form; of constant height."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -102,7 +102,7 @@ class FramesMark(QWidget):
         self.setFixedHeight(HEIGHT + 2)
 
     def show_frames(self, frames: Sequence[Frame]) -> None:
-        """These from now on."""
+        """Show these frames."""
         if tuple(frames) == self.frames:
             return
         self.frames = tuple(frames)
@@ -117,7 +117,7 @@ class FramesMark(QWidget):
 
 
 class FramesDelegate(QStyledItemDelegate):
-    """Shows the frames of an item in place of its icon, and its shorter words where the long ones have no room."""
+    """Delegate that shows an item's frames in place of its icon, and its shorter words where there is no room."""
 
     def initStyleOption(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
         super().initStyleOption(option, index)

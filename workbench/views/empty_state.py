@@ -15,7 +15,7 @@ _WIDEST, _MARGIN = 440, 12
 
 
 class EmptyState(QWidget):
-    """A sentence in the middle, with an optional button."""
+    """Sentence in the middle, with an optional button."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -36,7 +36,7 @@ class EmptyState(QWidget):
     def say(
         self, message: str, button: str = "", on_button: Callable[[], None] | None = None, why_not: str = ""
     ) -> None:
-        """Show a sentence; the button only if it is named, and grey while `why_not` says why."""
+        """Show a sentence; the button only if it is named, and disabled while `why_not` gives the reason."""
         self._label.setText(message)
         say(self.button, button)
         enable(self.button, why_not, "")
@@ -44,7 +44,7 @@ class EmptyState(QWidget):
 
     @property
     def message(self) -> str:
-        """The sentence."""
+        """Sentence that is shown."""
         return self._label.text()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -53,7 +53,7 @@ class EmptyState(QWidget):
         super().resizeEvent(event)
 
     def minimumSizeHint(self) -> QSize:
-        """Without the margins: they follow the width, and must not keep a window as wide as it once was."""
+        """Return the size without the margins: they follow the width, and must not keep a window wide."""
         hint, margins = super().minimumSizeHint(), self._column.contentsMargins()
         return QSize(hint.width() - margins.left() - margins.right() + 2 * _MARGIN, hint.height())
 

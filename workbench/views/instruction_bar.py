@@ -13,7 +13,7 @@ from workbench.views.layouts import RoomySentence, in_row
 
 
 class InstructionBar(QFrame):
-    """Which instruction of how many, what is to be done, a button that shows where, and one that leaves.
+    """Bar with an instruction, its number, a button that shows where, and one that ends them.
 
     It has room for the longest of `texts`: the page below it stays where it is as one follows the other.
     """

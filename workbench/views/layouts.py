@@ -44,7 +44,7 @@ def in_column(
     margins: tuple[int, int, int, int] = NO_MARGINS,
     spacing: int | None = None,
 ) -> QVBoxLayout:
-    """Parts one below the other; `on` is the widget that they are laid out on."""
+    """Lay out parts one below the other; `on` is the widget that they are laid out on."""
     return _filled(QVBoxLayout(on) if on is not None else QVBoxLayout(), parts, margins, spacing)
 
 
@@ -54,12 +54,12 @@ def in_row(
     margins: tuple[int, int, int, int] = NO_MARGINS,
     spacing: int | None = None,
 ) -> QHBoxLayout:
-    """Parts side by side; `on` is the widget that they are laid out on."""
+    """Lay out parts side by side; `on` is the widget that they are laid out on."""
     return _filled(QHBoxLayout(on) if on is not None else QHBoxLayout(), parts, margins, spacing)
 
 
 def holding(layout: QLayout) -> QWidget:
-    """A widget with this layout and nothing else."""
+    """Make a widget with this layout and nothing else."""
     widget = QWidget()
     widget.setLayout(layout)
     return widget
@@ -78,7 +78,7 @@ class _QuietBar(QScrollBar):
 
 
 class UpAndDown(QScrollArea):
-    """Scrolls a widget up and down only: it is never narrower than what is in it, else that would be cut off.
+    """Scroll area for up and down only: it is never narrower than its content, which would be cut off.
 
     With `steady` its bar has room even where there is nothing to scroll: as there is, no sentence is wrapped anew.
     """
@@ -114,7 +114,7 @@ class UpAndDown(QScrollArea):
         self.fitted.emit()
 
     def lacking(self) -> int:
-        """So many pixels of what is in it have to be scrolled to; less than none: so many are free."""
+        """Return the height in px of the content that needs scrolling; negative: free."""
         inside = self.widget()
         layout = inside.layout() if inside is not None else None
         if inside is None or layout is None:
@@ -140,11 +140,11 @@ class Folding(QWidget):
             self._box.addWidget(part, 1 if self._box.count() else share)
 
     def part(self, number: int) -> QWidget:
-        """What holds a part, to hide it."""
+        """Return the widget that holds a part, to hide it."""
         return self._parts[number]
 
     def minimumSizeHint(self) -> QSize:
-        """As narrow as the widest part."""
+        """Return the width of the widest part."""
         return QSize(max(self._widths()), super().minimumSizeHint().height())
 
     def event(self, event: QEvent) -> bool:
@@ -168,12 +168,12 @@ class Folding(QWidget):
 
 
 def resize_on_screen(window: QWidget, width: int, height: int) -> None:
-    """Make a window so large, in pixels, or as large as its screen has room for."""
+    """Resize a window to this size in px, or to what its screen has room for."""
     window.resize(QSize(width, height).boundedTo(window.screen().availableSize()))
 
 
 class Elided(QElidingLabel):
-    """Words that are cut with an ellipsis where there is no room: they widen no window. Their tip tells them whole."""
+    """Label cut with an ellipsis where there is no room: it widens no window. Their tip tells them whole."""
 
     def setText(self, text: str) -> None:
         super().setText(text)
@@ -181,7 +181,7 @@ class Elided(QElidingLabel):
 
 
 class Tabs(QTabWidget):
-    """Tabs that all stay in sight: where there is no room for their titles these are cut, and their tips tell more."""
+    """Tabs that all stay in sight: where there is no room, their titles are cut, and their tips tell more."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -190,7 +190,7 @@ class Tabs(QTabWidget):
         self.setElideMode(Qt.TextElideMode.ElideRight)
 
     def add(self, tab: QWidget, title: str, tip: str = "") -> None:
-        """Put a tab after the others."""
+        """Add a tab after the others."""
         self.setTabToolTip(self.addTab(tab, title), tip or title)
 
 
@@ -207,14 +207,14 @@ class _TabBar(QTabBar):
 
 
 def heading(text: str) -> QLabel:
-    """A small title within a panel."""
+    """Make a small title within a panel."""
     label = QLabel(text)
     label.setObjectName("heading")
     return label
 
 
 class Sentence(QLabel):
-    """Words that are wrapped, but for a number and its unit."""
+    """Label with wrapped words, with no break between a number and its unit."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__()
@@ -226,7 +226,7 @@ class Sentence(QLabel):
 
 
 class RoomySentence(Sentence):
-    """As high as the highest of the texts that are to come needs it: what stands below it stays where it is."""
+    """Label as high as the highest of the texts to come: what is below it stays in place."""
 
     def __init__(self, to_come: Iterable[str] = ()) -> None:
         super().__init__()
@@ -242,7 +242,7 @@ class RoomySentence(Sentence):
 
 
 class FewLines(Sentence):
-    """A sentence with room for so many lines, however short it is: what stands below it stays where it is.
+    """Label with room for so many lines, however short the sentence: what is below it stays in place.
 
     One that is longer takes more room; a `steady` one is cut instead, and its tip tells it whole.
     """
@@ -258,7 +258,7 @@ class FewLines(Sentence):
         self.setText(text)
 
     def text(self) -> str:
-        """All of it."""
+        """Return the whole text."""
         return self._said
 
     def setText(self, text: str) -> None:
@@ -297,14 +297,14 @@ class FewLines(Sentence):
 
 
 def muted(text: str = "") -> Sentence:
-    """An explaining sentence."""
+    """Make an explaining sentence."""
     label = Sentence(text)
     label.setObjectName("muted")
     return label
 
 
 def alarm() -> Sentence:
-    """What is said first, in red; it takes no room where there is nothing to say."""
+    """Make a sentence in red that is shown first; it takes no room when it is empty."""
     label = Sentence()
     label.setObjectName("alarm")
     label.hide()
@@ -312,20 +312,20 @@ def alarm() -> Sentence:
 
 
 def say_notes(notes: Iterable[Message], grave: QLabel, others: QLabel) -> None:
-    """Show notes, the grave ones where they are said first."""
+    """Show notes, the grave ones in the label that is shown first."""
     told = gravest_first(notes)
     for label, wanted in ((grave, True), (others, False)):
         say(label, "\n".join(text_of(note) for note in told if is_grave(note) is wanted))
 
 
 def say(label: QLabel | QAbstractButton, text: str) -> None:
-    """Show a text; nothing takes no room."""
+    """Show a text in a label, or hide the label where it is empty."""
     label.setText(text)
     label.setVisible(bool(text))
 
 
 def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
-    """Let it be pressed unless something says why not; its tip says that, or what it does.
+    """Enable a button unless there is a reason why not; its tip is the reason, or its action.
 
     Greyed while it has the focus, it leaves the focus where it was: on what it stands on.
     """
@@ -336,7 +336,7 @@ def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
 
 
 def mark_primary(button: QAbstractButton, primary: bool) -> None:
-    """Show whether a button is the next thing to do."""
+    """Style a button as the next action, or as one of the others."""
     if button.property("primary") != primary:
         button.setProperty("primary", primary)
         button.style().unpolish(button)
@@ -344,7 +344,8 @@ def mark_primary(button: QAbstractButton, primary: bool) -> None:
 
 
 def rename(button: QAbstractButton, text: str) -> None:
-    """Say what it does now. Where that is another thing, it leaves the focus beside itself: Space was for the first.
+    """Set the text of a button. Where that is another thing, it leaves the focus beside itself: Space was for the
+    first.
 
     Else the focus would lie on Stop as long as something runs that was started by that button.
     """
@@ -354,7 +355,7 @@ def rename(button: QAbstractButton, text: str) -> None:
 
 
 def keep_focus(window: QWidget) -> bool:
-    """Give the focus of what is greyed or hidden to what that stands on; whether that was to be done.
+    """Move the focus from a disabled or hidden widget to the one that contains it; True if needed.
 
     Qt gives it to the next widget, where the next Space would press a button that nobody chose.
     """

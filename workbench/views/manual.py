@@ -29,25 +29,25 @@ _DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphin
 
 
 def manual_folder() -> Path:
-    """Where the pages of the manual lie."""
+    """Return the folder of the manual's pages."""
     return Path(str(files("resources") / "manual"))
 
 
 def manual_page(name: str) -> Path:
-    """A page by its name without an ending, in the window's language if there is one in it."""
+    """Return a page by its name without an ending, in the window's language if there is one in it."""
     translated = manual_folder() / spoken() / f"{name}.md"
     return translated if translated.is_file() else manual_folder() / f"{name}.md"
 
 
 def headings(path: Path) -> list[str]:
-    """Names of the headings of a page by which links know them, as Sphinx makes them."""
+    """List the names of the headings of a page for links, as Sphinx makes them."""
     lines = _FENCED.sub("", path.read_text(encoding="utf-8")).splitlines()
     titles = [line.lstrip("#").strip() for line in lines if line.startswith("#")]
     return [_NOT_IN_ANCHORS.sub("", title.lower().replace(" ", "-")) for title in titles]
 
 
 class ManualPages(QTextBrowser):
-    """The pages, with links between them; links to elsewhere go to the system's browser."""
+    """Browser of the pages, with links between them; links to elsewhere go to the system's browser."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -77,7 +77,7 @@ class ManualPages(QTextBrowser):
     def doSetSource(
         self, name: QUrl | str, type: QTextDocument.ResourceType = QTextDocument.ResourceType.UnknownResource
     ) -> None:
-        """A page as Qt reads Markdown; what is for Sphinx alone is left out."""
+        """Load a page as Qt reads Markdown; what is for Sphinx alone is left out."""
         path = Path(QUrl(name).toLocalFile())
         if path.suffix != ".md" or not path.is_file():
             return
@@ -105,7 +105,7 @@ class ManualPages(QTextBrowser):
 
 
 class ManualWindow(QWidget):
-    """The manual with buttons for back, forward and its first page."""
+    """Window with the manual and buttons for back, forward and its first page."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent, Qt.WindowType.Window)

@@ -17,7 +17,7 @@ _PATIENCE_S = 0.5
 
 
 class Splash(QWidget):
-    """Shown and drawn as soon as it is made, in the colours of the application; ends with `finish`.
+    """Splash screen, shown and drawn as soon as it is made, in the colours of the application; ends with `finish`.
 
     Qt's own splash screen waits for a second for an X server that has no window manager.
     """
@@ -34,7 +34,7 @@ class Splash(QWidget):
             QGuiApplication.processEvents(QEventLoop.ProcessEventsFlag.AllEvents, _LISTEN_MS)
 
     def finish(self) -> None:
-        """The window is there."""
+        """Close the splash screen: the window is there."""
         self.close()
         self.deleteLater()
 

@@ -15,7 +15,7 @@ from workbench.views.lists.value_rows import VERDICT_ICONS, VerdictKind
 
 @dataclass(frozen=True, slots=True)
 class CardButton:
-    """A button of the card: `why_not` (a sentence, or "") greys it, `tip` says what it does."""
+    """Button of the card: `why_not` (a sentence, or "") disables it, `tip` describes its action."""
 
     key: str
     text: str
@@ -24,7 +24,7 @@ class CardButton:
 
 
 class StageCard(QFrame):
-    """A title, a sentence, and buttons of which one may be the primary."""
+    """Card with a title, a sentence, and buttons of which one may be the primary."""
 
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -57,7 +57,7 @@ class StageCard(QFrame):
         steady: bool = False,
         verdict: VerdictKind = "",
     ) -> None:
-        """Say how far it is.
+        """Show the stage: title, sentence, tips, primary button and verdict.
 
         Parameters
         ----------

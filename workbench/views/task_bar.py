@@ -18,12 +18,12 @@ ROOM_PX = 2
 
 
 def time_left(seconds: float | None) -> str:
-    """How long a job still takes, in words; none while nothing is known."""
+    """Write the time left of a job in words; "" while it is not known."""
     return "" if seconds is None else tr("about {time} left", time=in_words(seconds))
 
 
 class StatusBar(QStatusBar):
-    """A message beside a running job is cut with an ellipsis and its tip tells it whole; Qt's own would be clipped."""
+    """Status bar that cuts a message beside a running job with an ellipsis and puts it whole into the tip."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -58,7 +58,7 @@ class _Doing(Elided):
 
 
 class TaskBar(QWidget):
-    """Shows one running job; hidden while there is none."""
+    """Bar with one running job; hidden while there is none."""
 
     cancel_pressed = Signal()
     tick = Signal()
@@ -85,7 +85,7 @@ class TaskBar(QWidget):
         self.hide()
 
     def begin(self, label: str) -> None:
-        """A job has started."""
+        """Show a job that has started."""
         self._label.setText(label)
         self._bar.setRange(0, 0)
         self._left.setText("")
@@ -96,7 +96,7 @@ class TaskBar(QWidget):
         self.show()
 
     def progress(self, label: str, stage: str, share: float | None, left: str) -> None:
-        """What the job is doing, the share of it that is done (None: unknown), and the time left in words."""
+        """Show the stage of the job, the share that is done (None: unknown), and the time left in words."""
         self._label.setText(named(label, stage) if stage else label)
         if share is None:
             self._bar.setRange(0, 0)
@@ -108,11 +108,11 @@ class TaskBar(QWidget):
         self._left.setText(left)
 
     def cancelling(self) -> None:
-        """Cancel was pressed."""
+        """Show that Cancel was pressed."""
         enable(self.cancel, tr("Stopping …"), "")
         self._left.setText(tr("stopping …"))
 
     def end(self) -> None:
-        """The job is over."""
+        """Hide the bar: the job is over."""
         self._clock.stop()
         self.hide()

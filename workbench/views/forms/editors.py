@@ -32,7 +32,7 @@ def _is_for_the_window(event: QEvent, typing: bool) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class NumberRange:
-    """Which numbers may be entered, and how: `decimals`, the `step` of the arrow keys, the `unit` behind the number.
+    """Range of numbers that may be entered: `decimals`, the `step` of the arrow keys, the `unit` behind.
 
     With `none_text` the field may be left empty, which reads as that text and gives None; stepping away from it goes
     to `first`, or to the smallest number.
@@ -48,7 +48,7 @@ class NumberRange:
 
 
 class NumberEditor(SpinBox):
-    """A number of a range, with its unit; whole, and told as int, if the range has no decimals."""
+    """Editor of a number of a range, with its unit; an int if the range has no decimals."""
 
     committed = Signal()
 
@@ -78,13 +78,13 @@ class NumberEditor(SpinBox):
         self._told = self.content()
 
     def content(self) -> float | int | None:
-        """The number; None for none."""
+        """Return the number; None for none."""
         if self._none_text is not None and self.value() < self._least - 1e-12 * max(1.0, abs(self._least)):
             return None
         return round(self.value()) if self._whole else self.value()
 
     def set_content(self, value: object) -> None:
-        """Show a number without telling."""
+        """Show a number without emitting."""
         if value == self._told and (self.hasFocus() or self._stepping.isActive()):
             return  # it may be half typed
         self._stepping.stop()
@@ -134,7 +134,7 @@ class NumberEditor(SpinBox):
 
 
 class TextEditor(QLineEdit):
-    """One line of text."""
+    """Editor of one line of text."""
 
     committed = Signal()
 
@@ -145,11 +145,11 @@ class TextEditor(QLineEdit):
         self.editingFinished.connect(self._tell)
 
     def content(self) -> str:
-        """The text."""
+        """Return the text."""
         return self.text()
 
     def set_content(self, value: object) -> None:
-        """Show a text without telling; where it begins is what shows."""
+        """Show a text without emitting; its beginning is visible."""
         if value == self._told and self.hasFocus():
             return  # it may be half typed
         self._told = str(value)
@@ -170,7 +170,7 @@ _LINES = 4  # of a text of several, without scrolling
 
 
 class MultilineEditor(QPlainTextEdit):
-    """Several lines of text; told when the focus leaves. Tab goes on to the next editor."""
+    """Editor of several lines of text; it emits when the focus leaves. Tab goes on to the next editor."""
 
     committed = Signal()
 
@@ -184,11 +184,11 @@ class MultilineEditor(QPlainTextEdit):
         self.setFixedHeight(_LINES * self.fontMetrics().lineSpacing() + margins + 8)
 
     def content(self) -> str:
-        """The text."""
+        """Return the text."""
         return self.toPlainText()
 
     def set_content(self, value: object) -> None:
-        """Show a text without telling."""
+        """Show a text without emitting."""
         if value == self._told and self.hasFocus():
             return  # it may be half typed
         self._told = str(value)
@@ -204,14 +204,14 @@ class MultilineEditor(QPlainTextEdit):
             self.tell()
 
     def tell(self) -> None:
-        """Tell the text if it has changed."""
+        """Emit the text if it has changed."""
         if self.toPlainText() != self._told:
             self._told = self.toPlainText()
             self.committed.emit()
 
 
 class ChoiceEditor(Choice):
-    """One of several."""
+    """Editor of one of several values."""
 
     committed = Signal()
 
@@ -225,11 +225,11 @@ class ChoiceEditor(Choice):
         self._told: object = self.content()
 
     def content(self) -> object:
-        """The value chosen."""
+        """Return the value chosen."""
         return self._values[self.currentIndex()] if self._values else None
 
     def set_content(self, value: object) -> None:
-        """Show a choice without telling; a value that is none of them chooses nothing else."""
+        """Show a choice without emitting; a value that is none of them changes nothing."""
         if value in self._values:
             self.setCurrentIndex(self._values.index(value))
         self._told = self.content()
@@ -241,7 +241,7 @@ class ChoiceEditor(Choice):
 
 
 class CheckEditor(QCheckBox):
-    """Yes or no."""
+    """Editor of yes or no."""
 
     committed = Signal()
 
@@ -250,11 +250,11 @@ class CheckEditor(QCheckBox):
         self.clicked.connect(lambda _: self.committed.emit())
 
     def content(self) -> bool:
-        """Whether it is checked."""
+        """Return whether it is checked."""
         return self.isChecked()
 
     def set_content(self, value: object) -> None:
-        """Show yes or no without telling."""
+        """Show yes or no without emitting."""
         self.setChecked(bool(value))
 
 

@@ -25,7 +25,7 @@ _EDITOR_WIDTH = 132
 
 
 class SettingsForm(QWidget):
-    """Settings one below the other. `edited` tells key and value when an editor is left or Enter is pressed."""
+    """Form of settings one below the other. `edited` tells key and value when an editor is left or Enter is pressed."""
 
     edited = Signal(str, object)
 
@@ -45,7 +45,7 @@ class SettingsForm(QWidget):
     # ---- making it
 
     def add_section(self, title: str) -> None:
-        """A heading over the settings that follow."""
+        """Add a heading over the settings that follow."""
         heading = QLabel(title)
         heading.setObjectName("heading")
         heading.setWordWrap(True)
@@ -53,37 +53,37 @@ class SettingsForm(QWidget):
         self._grid.addWidget(heading, self._grid.rowCount(), 0, 1, 2)
 
     def add_number(self, key: str, label: str, within: NumberRange, help: str = "", *, tip: str = "") -> None:
-        """A number; whole, and told as int, if it has no decimals."""
+        """Add a number; an int, if it has no decimals."""
         editor = NumberEditor(within)
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help, tip)
 
     def add_text(self, key: str, label: str, help: str = "", *, placeholder: str = "", tip: str = "") -> None:
-        """One line of text."""
+        """Add one line of text."""
         self._add(key, label, TextEditor(placeholder), help, tip, wide=True)
 
     def add_multiline(self, key: str, label: str, help: str = "") -> None:
-        """Several lines of text."""
+        """Add several lines of text."""
         self._add(key, label, MultilineEditor(), help, wide=True)
 
     def add_choice(self, key: str, label: str, choices: Sequence[tuple[object, str]], help: str = "") -> None:
-        """One of several (value, text)."""
+        """Add a choice of one of several (value, text)."""
         editor = ChoiceEditor(list(choices))
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help)
 
     def add_check(self, key: str, label: str, help: str = "") -> None:
-        """Yes or no."""
+        """Add a check box."""
         self._add(key, "", CheckEditor(label), help, wide=True)
 
     # ---- using it
 
     def values(self) -> dict[str, object]:
-        """The values as they stand, by key."""
+        """Return the present values, by key."""
         return {key: editor.content() for key, editor in self._editors.items()}
 
     def set_values(self, values: Mapping[str, object]) -> None:
-        """Show values without emitting; keys the form does not have are passed over.
+        """Show values without emitting; keys the form does not have are ignored.
 
         An editor in which the user is typing is left alone unless its value is to be another than it was.
         """
@@ -92,24 +92,24 @@ class SettingsForm(QWidget):
                 editor.set_content(values[key])
 
     def set_editable(self, key: str, editable: bool, why: str = "") -> None:
-        """Enable or disable a setting; the tooltip then says why."""
+        """Enable or disable a setting; the tooltip then gives the reason."""
         self._editors[key].setEnabled(editable)
         self._editors[key].setToolTip(self._tips[key] if editable or not why else why)
 
     def set_complaint(self, key: str, sentence: str) -> None:
-        """Say in place of the help what is wrong with a value; "" brings the help back."""
+        """Show in place of the help what is wrong with a value; "" restores the help."""
         if self._complaints.get(key, "") != sentence:
             self._complaints[key] = sentence
             self._show_help(key)
 
     def ask(self, key: str, sentence: str) -> None:
-        """Ask in place of the help for a value that is not set yet; "" brings the help back."""
+        """Ask in place of the help for a value that is not set yet; "" restores the help."""
         if self._questions.get(key, "") != sentence:
             self._questions[key] = sentence
             self._show_help(key)
 
     def editor(self, key: str) -> QWidget:
-        """The editor of a setting.
+        """Return the editor of a setting.
 
         Raises
         ------
@@ -119,11 +119,11 @@ class SettingsForm(QWidget):
         return self._editors[key]
 
     def editors(self) -> tuple[QWidget, ...]:
-        """All editors, from above to below."""
+        """Return all editors, from top to bottom."""
         return tuple(self._editors.values())
 
     def help_of(self, key: str) -> str:
-        """What stands under a setting: its help, or the complaint, or the question."""
+        """Return the text under a setting: its help, or the complaint, or the question."""
         return self._complaints.get(key) or self._questions.get(key) or self._helps[key][1]
 
     def changeEvent(self, event: QEvent) -> None:

@@ -27,7 +27,7 @@ from workbench.views.layouts import enable, in_column, in_row, say
 
 
 class DeviceField(QWidget):
-    """A device of the list, or any other typed in; for a replay a folder."""
+    """Field of a device: of the list, or any other typed in; for a replay a folder."""
 
     chosen = Signal(str)
     look = Signal()
@@ -99,7 +99,7 @@ class DeviceField(QWidget):
 
 
 class NumberField(SpinBox):
-    """A number with its unit; its lowest step is "as it is", which is None."""
+    """Field of a number with its unit; its lowest step is "as it is", which is None."""
 
     edited = Signal(object)
 
@@ -116,7 +116,7 @@ class NumberField(SpinBox):
         self.valueChanged.connect(lambda value: self.edited.emit(None if value <= self._nothing else value))
 
     def limit(self, limits: tuple[float, float] | None) -> None:
-        """Keep to what the camera can do; None: to what any camera can."""
+        """Set the range to that of the camera; None: to that of any camera."""
         low, high = limits or self._usual
         self.blockSignals(True)
         self._nothing = low - 10 ** -self.decimals()
@@ -131,7 +131,7 @@ class NumberField(SpinBox):
 
 
 class ChoiceField(Choice):
-    """One of several words; the first entry is "as it is", which is None."""
+    """Field of one of several words; the first entry is "as it is", which is None."""
 
     edited = Signal(object)
 
@@ -142,7 +142,7 @@ class ChoiceField(Choice):
         self.activated.connect(lambda _: self.edited.emit(self.currentData()))
 
     def show_choices(self, choices: Sequence[str], chosen: str | None) -> None:
-        """Offer these; one that is chosen already is offered, too."""
+        """Offer these choices, and the one that is chosen already."""
         wanted = [None, *choices, *([chosen] if chosen and chosen not in choices else [])]
         if wanted != [self.itemData(place) for place in range(self.count())]:
             self.clear()
@@ -152,7 +152,7 @@ class ChoiceField(Choice):
 
 
 class RegionField(QLineEdit):
-    """A part of the sensor as four whole numbers; empty is "as it is"."""
+    """Field of a part of the sensor as four whole numbers; empty is "as it is"."""
 
     edited = Signal(str)
 
@@ -176,7 +176,7 @@ class RegionField(QLineEdit):
 
 
 class SourceForm(QWidget):
-    """Kind and device, and the settings the source has; `live` is the page's LivePresenter."""
+    """Form of kind and device, and the settings the source has; `live` is the page's LivePresenter."""
 
     def __init__(self, live: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -196,7 +196,7 @@ class SourceForm(QWidget):
         self._connect()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         live, settings = self.live, self.live.settings
         running = live.running
         self.kind.setCurrentIndex(max(self.kind.findData(settings.kind), 0))

@@ -32,7 +32,7 @@ MARK = (QKeySequence(Qt.Key.Key_B), QKeySequence(Qt.Key.Key_Period))
 
 
 class LivePanel(QWidget):
-    """Which source, its settings, start, pause, take, auto; and how many pictures there are.
+    """Panel of the live source: its settings, start, pause, take, auto, and the number of pictures.
 
     `live` is the page's LivePresenter; its keys mean something as long as `keys_on` is seen, by default the panel.
     """
@@ -59,7 +59,7 @@ class LivePanel(QWidget):
         QApplication.beep()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         live = self.live
         running = live.running
         self.form.refresh()
@@ -97,7 +97,7 @@ class LivePanel(QWidget):
         self.show_counts()
 
     def set_primary(self, primary: bool) -> None:
-        """Whether Start is the page's one primary button now."""
+        """Set whether Start is the page's one primary button now."""
         if self.start.property("primary") != primary:
             self.start.setProperty("primary", primary)
             self.start.style().unpolish(self.start)
@@ -168,14 +168,14 @@ class LivePanel(QWidget):
 
 
 def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
-    """Another recording runs: ask whether it is to be stopped for that of `live`."""
+    """Ask whether another recording that runs is to be stopped for that of `live`."""
     answers = [tr("Stop it and start here"), tr("Leave it running")]
     if ask.ask(parent, tr("Live source"), question, answers) == 0:
         live.start(stop_other=True)
 
 
 class LiveStrip(QWidget):
-    """What the recording asks, with the button that answers; whether the source is gone, too fast, or badly exposed.
+    """Strip with the request of the recording and its button, and faults: source gone, too fast, badly exposed.
 
     Hidden while there is nothing to say. Where the page itself says what is asked, it does not (`asks`).
     """
@@ -204,7 +204,7 @@ class LiveStrip(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what is asked and what is wrong now."""
+        """Show the present request and what is wrong."""
         sentence, button = self.live.question
         self.answer.setText(button)
         self._ask.say(sentence if self._asks else "")

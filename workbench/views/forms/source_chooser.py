@@ -23,7 +23,7 @@ from workbench.views.layouts import in_column, in_row
 
 
 class NextAction(NamedTuple):
-    """The button that leads on where there are no pictures yet, as `EmptyState.say` takes it."""
+    """Button of the next action where there are no pictures yet, as `EmptyState.say` takes it."""
 
     text: str
     do: Callable[[], None]
@@ -31,7 +31,8 @@ class NextAction(NamedTuple):
 
 
 class SourceChooser(QWidget):
-    """A recorded folder or a live source; `live_panel` is a LivePanel. A folder may be dropped anywhere on it.
+    """Chooser of a recorded folder or a live source; `live_panel` is a LivePanel. A folder may be dropped anywhere on
+    it.
 
     Also takes drops for another widget (the picture) by `accept_drops_on`.
     """
@@ -73,7 +74,7 @@ class SourceChooser(QWidget):
 
     @property
     def mode(self) -> str:
-        """Which one is shown: "folder" or "live"."""
+        """Source shown: "folder" or "live"."""
         return "live" if self.live.isChecked() else "folder"
 
     def set_mode(self, mode: str) -> None:
@@ -95,13 +96,16 @@ class SourceChooser(QWidget):
             self.folder_chosen.emit(folder)
 
     def next_action(self, live: Any) -> NextAction:
-        """Start the live source, whose LivePresenter is `live`, where that is what is shown; else choose a folder."""
+        """Make the button that starts the live source, if that is shown, or chooses a folder.
+
+        `live` is its LivePresenter.
+        """
         if self.mode == "live":
             return NextAction(tr("Start live"), live.start, live.buttons.start)
         return NextAction(tr("Choose folder …"), self.choose, "")
 
     def accept_drops_on(self, widget: QWidget) -> None:
-        """Take folders that are dropped on `widget`."""
+        """Accept folders that are dropped on `widget`."""
         widget.setAcceptDrops(True)
         widget.installEventFilter(self)
 
@@ -133,7 +137,7 @@ class SourceChooser(QWidget):
 
 
 def dropped_folder(event: QDropEvent | QDragEnterEvent) -> Path | None:
-    """The folder that is dropped, or the one a dropped file is in."""
+    """Return the folder that is dropped, or the one a dropped file is in."""
     paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
     if not paths or (paths[0] / "project.json").exists() or (paths[0] / "rig.toml").exists():
         return None  # a project or a whole recording set: the window opens it

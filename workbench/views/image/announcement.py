@@ -14,7 +14,7 @@ _SHARE = 0.8  # of the picture's width that it takes at most
 
 
 class Announcement(QLabel):
-    """A sentence at the top of the picture; one that comes while another stands waits, and only the last of them."""
+    """Sentence at the top of the picture; one that comes while another is shown waits, and only the last of them."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -33,7 +33,7 @@ class Announcement(QLabel):
         self.hide()
 
     def say(self, sentence: str) -> None:
-        """Say a sentence, or that there is nothing to say any more."""
+        """Show a sentence, or "" to show none any more."""
         stood_ms = 1000 * (time.monotonic() - self._since)
         if sentence == self.text() and not self.isHidden():
             self._waiting = ""
@@ -45,7 +45,7 @@ class Announcement(QLabel):
             self._clock.start(round(STAYS_MS - stood_ms))
 
     def place(self) -> None:
-        """At the top of the picture, in its middle."""
+        """Move to the top of the picture, in its middle."""
         width = self._picture.width()
         self.setFixedWidth(min(round(_SHARE * width), self.fontMetrics().horizontalAdvance(self.text()) + 48))
         self.adjustSize()

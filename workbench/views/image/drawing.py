@@ -35,7 +35,7 @@ _STEP, _LEAP = 1, 20
 
 @dataclass(slots=True)
 class Draft:
-    """A region being drawn; places are (u, v)."""
+    """Region being drawn; places are (u, v)."""
 
     name: str
     kind: Literal["polygon", "lasso"]
@@ -43,18 +43,20 @@ class Draft:
     pencil: tuple[float, float] | None = None
 
     def add(self, u: float, v: float, pixel: float) -> None:
-        """A corner, or the next point of the stroke; a screen pixel is `pixel` wide. The same place twice is once."""
+        """Add a corner, or the next point of the stroke; a screen pixel is `pixel` wide. The same place twice is
+        once.
+        """
         step = (_LASSO_STEP if self.kind == "lasso" else _SAME_PLACE) * pixel
         if not self.corners or np.hypot(self.corners[-1][0] - u, self.corners[-1][1] - v) > step:
             self.corners.append((u, v))
 
     def outline(self) -> Points:
-        """The corners (N, 2)."""
+        """Return the corners (N, 2)."""
         return np.array(self.corners, dtype=np.float64).reshape(-1, 2)
 
 
 class DraftLayer(Layer):
-    """Shows the unfinished region, with the line to the pencil."""
+    """Layer with the unfinished region, and the line to the pencil."""
 
     draft: Draft | None = None
 
@@ -87,7 +89,7 @@ class DraftLayer(Layer):
 
 
 class DrawingTool(QObject):
-    """The pencil. While `active`, the view hands it what mouse and keys do."""
+    """Pencil for drawing regions. While `active`, the view hands it what mouse and keys do."""
 
     drawn = Signal(str, object)
     cancelled = Signal(str)
@@ -101,7 +103,7 @@ class DrawingTool(QObject):
 
     @property
     def draft(self) -> Draft | None:
-        """What is being drawn."""
+        """Region being drawn."""
         return self._layer.draft
 
     @property
@@ -110,18 +112,18 @@ class DrawingTool(QObject):
         return self.draft is not None and self.draft.kind == "lasso"
 
     def start(self, name: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Begin a region; one being drawn is cancelled."""
+        """Start a region; one being drawn is cancelled."""
         self.stop()
         self._layer.draft = Draft(name, kind)
         self.active_changed.emit(True)
 
     def stop(self) -> None:
-        """End without a result."""
+        """End drawing without a result."""
         if (draft := self._end()) is not None:
             self.cancelled.emit(draft.name)
 
     def finish(self) -> None:
-        """Close the region if it has corners enough; a stroke that has not begins again."""
+        """Close the region if it has enough corners; a stroke that has not starts again."""
         if self.draft is None:
             return
         if len(self.draft.corners) >= FEWEST_CORNERS:
@@ -133,25 +135,25 @@ class DrawingTool(QObject):
             self._layer.update()
 
     def add(self, place: QPointF) -> None:
-        """A corner, or the next point of the stroke."""
+        """Add a corner, or the next point of the stroke."""
         if self.draft is not None:
             self.draft.add(place.x(), place.y(), self._box.pixel)
             self._layer.update()
 
     def take_back(self) -> None:
-        """Forget the last corner."""
+        """Remove the last corner."""
         if self.draft is not None and self.draft.corners:
             self.draft.corners.pop()
             self._layer.update()
 
     def hover(self, place: QPointF | None) -> None:
-        """The pencil is there."""
+        """Move the pencil to a place."""
         if self.draft is not None:
             self.draft.pencil = None if place is None else (place.x(), place.y())
             self._layer.update()
 
     def key(self, event: QKeyEvent) -> bool:
-        """What a key means to the pencil; False if nothing. Arrows move it, Space sets a corner."""
+        """Handle a key; False if it has no meaning. Arrows move it, Space sets a corner."""
         if self.draft is None:
             return False
         key = Qt.Key(event.key())

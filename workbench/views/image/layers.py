@@ -18,7 +18,7 @@ from workbench.views.image.symbols import symbol_pixmap
 
 
 class LayerStack(QObject):
-    """Layers in the order they first came; a layer set anew takes the place of the one of its name."""
+    """Layers in the order they first came; a layer set anew replaces the one of its name."""
 
     changed = Signal()
 
@@ -46,13 +46,13 @@ class LayerStack(QObject):
         self.changed.emit()
 
     def remove(self, name: str) -> None:
-        """Take a layer away; none of that name is no error."""
+        """Remove a layer; none of that name is no error."""
         if (layer := self._layers.pop(name, None)) is not None:
             self._box.removeItem(layer)
             self.changed.emit()
 
     def clear(self) -> None:
-        """Take all layers away; which are hidden stays known."""
+        """Remove all layers; hidden names are remembered."""
         for layer in self._layers.values():
             self._box.removeItem(layer)
         self._layers = {}
@@ -70,17 +70,17 @@ class LayerStack(QObject):
         return name not in self._hidden
 
     def legend(self) -> list[tuple[str, KeySign, ColourLike]]:
-        """Title, sign and colour of the layers shown that have a title."""
+        """Return title, sign and colour of the layers shown that have a title."""
         shown = (self._layers[name] for name in self if self.is_visible(name))
         return [(layer.title, *layer.key) for layer in shown if layer.title]
 
     def points(self) -> Points:
-        """All points (N, 2) of the layers of points that are shown."""
+        """Return all points (N, 2) of the layers of points that are shown."""
         shown = (self._layers[name] for name in self if self.is_visible(name))
         return np.concatenate([np.zeros((0, 2)), *(layer.uv for layer in shown if isinstance(layer, PointsLayer))])
 
     def point_at(self, u: float, v: float) -> tuple[str, int] | None:
-        """The topmost layer with a point at (u, v), and the point's number."""
+        """Find the topmost layer with a point at (u, v), and the point's number."""
         for name in reversed(list(self)):
             if self.is_visible(name):
                 index = self._layers[name].point_at(u, v, self._box.pixel)
@@ -89,7 +89,7 @@ class LayerStack(QObject):
         return None
 
     def tip_at(self, u: float, v: float) -> str:
-        """What the topmost point there that has something to say says."""
+        """Return the tip of the topmost point there that has one."""
         for name in reversed(list(self)):
             layer = self._layers[name]
             index = layer.point_at(u, v, self._box.pixel) if self.is_visible(name) else None
@@ -98,7 +98,7 @@ class LayerStack(QObject):
         return ""
 
     def grip_at(self, u: float, v: float) -> tuple[str, Grip] | None:
-        """The editable region that can be dragged from there, and by what."""
+        """Find the editable region that can be dragged from there, and its part."""
         for name in reversed(list(self)):
             layer = self._layers[name]
             if isinstance(layer, PolygonLayer) and self.is_visible(name):
@@ -118,7 +118,7 @@ MARGIN, GAP, ROUND = 8, 6, 4
 
 
 class Legend(QWidget):
-    """A key of symbols and colours over a corner of the picture; the mouse goes through it.
+    """Key of symbols and colours over a corner of the picture; the mouse goes through it.
 
     Painted, not laid out from labels: it changes with almost every frame of a scan.
     """
@@ -130,7 +130,7 @@ class Legend(QWidget):
         self.hide()
 
     def set_entries(self, entries: Sequence[tuple[str, KeySign, ColourLike]]) -> None:
-        """Title, sign and colour of each; nothing is done when nothing has changed."""
+        """Set title, sign and colour of each entry; nothing is done when nothing has changed."""
         wanted = [(title, sign, to_rgba(colour)) for title, sign, colour in entries]
         if wanted != self._entries:
             self._entries = wanted
@@ -140,7 +140,7 @@ class Legend(QWidget):
 
     @property
     def titles(self) -> list[str]:
-        """What it lists."""
+        """Titles of its entries."""
         return [title for title, _, _ in self._entries]
 
     def sizeHint(self) -> QSize:
@@ -170,7 +170,7 @@ class Legend(QWidget):
 
 @lru_cache(maxsize=256)
 def key_pixmap(sign: KeySign, rgba: Rgba, ratio: float) -> QPixmap:
-    """A sign for a legend."""
+    """Draw a sign for a legend."""
     pixmap = QPixmap(round(KEY_WIDTH * ratio), round(KEY_HEIGHT * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
@@ -194,7 +194,7 @@ def key_pixmap(sign: KeySign, rgba: Rgba, ratio: float) -> QPixmap:
 
 
 class LayersMenu(QMenu):
-    """One entry a layer with a title, checked while it is shown, and one for the legend."""
+    """Menu with one entry a layer with a title, checked while it is shown, and one for the legend."""
 
     legend_wanted = Signal(bool)
 

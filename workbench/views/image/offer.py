@@ -13,7 +13,7 @@ _SHARE = 0.9  # of the picture's width that it takes at most
 
 
 class Offer(QFrame):
-    """At the top of the picture, over it: so nothing moves as it comes and goes. It can be read from the rig."""
+    """Offer over the top of the picture: nothing moves as it appears and disappears. It can be read from the rig."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -31,7 +31,7 @@ class Offer(QFrame):
         self.hide()
 
     def say(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
-        """Offer `do` by a sentence and a button, or nothing any more ("")."""
+        """Offer `do` by a sentence and a button; "" ends the offer."""
         self._do = do
         self.setVisible(bool(sentence))
         if (sentence, button) != (self.label.text(), self.button.text()):
@@ -40,7 +40,7 @@ class Offer(QFrame):
             self.place()
 
     def place(self) -> None:
-        """At the top of the picture, in its middle."""
+        """Move to the top of the picture, in its middle."""
         width = self._picture.width()
         words = self.label.fontMetrics().horizontalAdvance(self.label.text())
         self.setFixedWidth(min(round(_SHARE * width), words + self.button.sizeHint().width() + 60))

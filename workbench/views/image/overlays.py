@@ -58,7 +58,7 @@ _POINT_REACH_PX = 8.0
 
 
 class Layer(QGraphicsItem):
-    """One layer. Its points are full-resolution pixels; symbols and widths are screen pixels.
+    """Layer of a picture. Its points are full-resolution pixels; symbols and widths are screen pixels.
 
     `title` stands in the legend beside `key`.
     """
@@ -70,15 +70,15 @@ class Layer(QGraphicsItem):
 
     @property
     def key(self) -> tuple[KeySign, ColourLike]:
-        """How the legend shows it."""
+        """Sign and colour for the legend."""
         return "line", EXCLUDED
 
     def point_at(self, u: float, v: float, pixel: float) -> int | None:
-        """The index of the point at (u, v), None where there is none; a screen pixel is `pixel` wide there."""
+        """Find the index of the point at (u, v), None where there is none; a screen pixel is `pixel` wide there."""
         return None
 
     def tip(self, index: int) -> str:
-        """What hovering over a point says."""
+        """Return the tip of a point."""
         return ""
 
     def boundingRect(self) -> QRectF:
@@ -86,7 +86,7 @@ class Layer(QGraphicsItem):
 
 
 class PointsLayer(Layer):
-    """Symbols at points."""
+    """Layer of symbols at points."""
 
     def __init__(
         self,
@@ -139,19 +139,19 @@ class PointsLayer(Layer):
 
 
 def as_points(uv: ArrayLike) -> Points:
-    """(N, 2) of whatever is given; nothing gives (0, 2)."""
+    """Convert any points to (N, 2); nothing gives (0, 2)."""
     return np.asarray(uv, dtype=np.float64).reshape(-1, 2)
 
 
 def on_screen(transform: QTransform, uv: Points) -> Points:
-    """Points of the picture as points of the screen, (N, 2)."""
+    """Convert points of the picture to points of the screen, (N, 2)."""
     turn = np.array([[transform.m11(), transform.m12()], [transform.m21(), transform.m22()]])
     mapped: Points = uv @ turn + [transform.dx(), transform.dy()]
     return mapped
 
 
 def cosmetic(rgba: tuple[int, int, int, int], width: float, widget: QWidget | None) -> QPen:
-    """A pen as wide on the screen whatever the zoom. Qt counts its width in the screen's own pixels."""
+    """Make a pen of constant width on the screen, whatever the zoom. Qt counts its width in the screen's own pixels."""
     pen = QPen(to_colour(rgba), width * (1.0 if widget is None else widget.devicePixelRatioF()))
     pen.setCosmetic(True)
     return pen
@@ -179,7 +179,7 @@ _VALUE_COLOURS = 16
 
 
 class LinesLayer(Layer):
-    """Polylines: in one colour, in one each, or coloured by a value at each point."""
+    """Layer of polylines: in one colour, in one each, or coloured by a value at each point."""
 
     def __init__(
         self,
@@ -219,7 +219,7 @@ class LinesLayer(Layer):
 
 
 class VectorsLayer(Layer):
-    """Arrows."""
+    """Layer of arrows."""
 
     def __init__(self, uv: ArrayLike, d_uv: ArrayLike, factor: float, colour: ColourLike, title: str) -> None:
         super().__init__(title)
@@ -307,7 +307,7 @@ _NARROWEST_PX = 12
 
 
 class CellsLayer(Layer):
-    """Cells of a grid over the whole picture, tinted where True."""
+    """Layer of cells of a grid over the whole picture, tinted where True."""
 
     def __init__(self, grid: ArrayLike, colour: ColourLike, extent: Callable[[], QRectF], title: str) -> None:
         super().__init__(title)
@@ -340,7 +340,7 @@ class CellsLayer(Layer):
 
 
 class PolygonLayer(Layer):
-    """A closed region; with handles at its corners and in its middle when it can be edited.
+    """Layer of a closed region; with handles at its corners and in its middle when it can be edited.
 
     One with a `label`, which stands below it, is dashed: it is offered.
     """
@@ -357,11 +357,11 @@ class PolygonLayer(Layer):
 
     @property
     def middle(self) -> QPointF:
-        """Where the whole is taken hold of: the mean of the corners."""
+        """Handle of the whole region: the mean of its corners."""
         return QPointF(*self.uv.mean(axis=0)) if len(self.uv) else QPointF()
 
     def grip_at(self, u: float, v: float, pixel: float) -> Grip | None:
-        """What of the region can be dragged from (u, v), where a screen pixel is `pixel` wide."""
+        """Find the part of the region that can be dragged from (u, v), where a screen pixel is `pixel` wide."""
         if not self.editable or not len(self.uv):
             return None
         distance = np.hypot(self.uv[:, 0] - u, self.uv[:, 1] - v)

@@ -18,7 +18,7 @@ _SIXTEEN_BIT_WHITES = (1023, 4095, 16383, 65535)
 
 
 class PictureItem(QGraphicsItem):
-    """Draws one picture with the centre of its first full-resolution pixel at (0, 0).
+    """Picture drawn with the centre of its first full-resolution pixel at (0, 0).
 
     Pixels are sharp squares when enlarged and averaged when reduced.
     """
@@ -33,7 +33,7 @@ class PictureItem(QGraphicsItem):
 
     @property
     def rect(self) -> QRectF:
-        """What the picture covers, in full-resolution pixels."""
+        """Extent of the picture in full-resolution pixels."""
         if self.picture is None:
             return QRectF()
         rows, columns = self.picture.shape[:2]
@@ -58,14 +58,14 @@ class PictureItem(QGraphicsItem):
             self._render()
 
     def set_tone(self, gain: float, gamma: float) -> None:
-        """Brighten: grey · gain, then to the power 1/gamma."""
+        """Set the tone: grey · gain, then to the power 1/gamma."""
         if (gain, gamma) != (self.gain, self.gamma):
             self.gain, self.gamma = gain, gamma
             if self.picture is not None:
                 self._render()
 
     def value_at(self, u: float, v: float) -> str:
-        """The value of the pixel at (u, v) as text, "" outside."""
+        """Return the value of the pixel at (u, v) as text, "" outside."""
         if self.picture is None:
             return ""
         column, row = (int(np.floor((x + 0.5) / self.scale_factor)) for x in (u, v))
@@ -78,7 +78,7 @@ class PictureItem(QGraphicsItem):
         return f"{value:.3g}" if value.dtype.kind == "f" else str(int(value))
 
     def image(self) -> QImage:
-        """The picture as it is shown, full size."""
+        """Return the picture as it is shown, full size."""
         return _wrapped(self._shown[0]).convertToFormat(QImage.Format.Format_RGB32) if self._shown else QImage()
 
     def boundingRect(self) -> QRectF:
@@ -159,7 +159,7 @@ _SMALLEST_SHARE = 0.15
 
 
 class PictureBox(pg.ViewBox):  # type: ignore[misc]
-    """A view box with square pixels and v downwards. It says where the mouse is and does; who listens decides.
+    """View box with square pixels and v downwards. It says where the mouse is and does; who listens decides.
 
     Places are (u, v) in full-resolution pixels.
     """
@@ -189,23 +189,23 @@ class PictureBox(pg.ViewBox):  # type: ignore[misc]
 
     @property
     def pixel(self) -> float:
-        """How many picture pixels one screen pixel is wide."""
+        """Width of one screen pixel in picture pixels."""
         width = self.width()
         return float(self.viewRect().width() / width) if width > 0 else 1.0
 
     def fit(self) -> None:
-        """Show all of it."""
+        """Show the whole picture."""
         if not self.extent.isEmpty():
             self.setRange(self.extent, padding=_MARGIN)
 
     def show_at_zoom(self, screen_pixels: float, centre: QPointF | None = None) -> None:
-        """Make a picture pixel this many screen pixels wide, with a place (or the middle) kept in the middle."""
+        """Make a picture pixel this many screen pixels wide, about a place (or the middle)."""
         middle = self.viewRect().center() if centre is None else centre
         width, height = self.width() / screen_pixels, self.height() / screen_pixels
         self.setRange(QRectF(middle.x() - width / 2, middle.y() - height / 2, width, height), padding=0)
 
     def zoom_by(self, factor: float, about: QPointF | None = None) -> None:
-        """Enlarge, a place (or the middle) staying where it is."""
+        """Enlarge about a place (or the middle)."""
         if self.extent.isEmpty() or self.width() <= 0:
             return
         zoom = 1.0 / self.pixel

@@ -23,7 +23,7 @@ GAP = 4
 
 
 class PaneTitle(QWidget):
-    """The line over a view: its title, what the page adds, and the button that gives it all the room."""
+    """Line over a view: its title, the page's widgets, and the button that maximises it."""
 
     wanted = Signal()
     """All the room is wanted, or given back: the button, or a double click."""
@@ -39,11 +39,11 @@ class PaneTitle(QWidget):
         self.show_maximised(maximised=False)
 
     def add(self, widget: QWidget) -> None:
-        """A page's own widget beside the button."""
+        """Add a page's own widget beside the button."""
         self._row.insertWidget(self._row.count() - 1, widget)
 
     def show_maximised(self, *, maximised: bool) -> None:
-        """Say what the button would do now."""
+        """Set the text of the button."""
         tip = (
             tr("Show both views again (or double-click the title)")
             if maximised
@@ -69,7 +69,7 @@ class SideBySide(QSplitter):
         self._main: int | None = None
 
     def add_view(self, title: str, view: QWidget) -> PaneTitle:
-        """Put a view at the right end."""
+        """Add a view at the right end."""
         head, pane = PaneTitle(title), QWidget()
         in_column(head, (view, 1), on=pane, margins=(0 if not self._panes else GAP, 0, GAP, 0), spacing=3)
         place = len(self._panes)
@@ -83,7 +83,7 @@ class SideBySide(QSplitter):
 
     @property
     def alone(self) -> int | None:
-        """Which view has all the room, or None."""
+        """Place of the view that has all the room, or None."""
         return self._alone
 
     def show_alone(self, place: int | None) -> None:
@@ -99,7 +99,7 @@ class SideBySide(QSplitter):
         self._share_out()
 
     def show_next(self) -> None:
-        """Give most of the room to the view after the main one, as they stand."""
+        """Give most of the room to the view after the main one."""
         if self._main is not None:
             self.show_main((self._main + 1) % len(self._panes))
 

@@ -18,7 +18,7 @@ _STROKE = 1.6
 
 @lru_cache(maxsize=512)
 def symbol_pixmap(symbol: Symbol, rgba: tuple[int, int, int, int], size: float, ratio: float) -> QPixmap:
-    """A symbol `size` screen pixels wide, in a pixmap with that device pixel ratio; its middle is the pixmap's."""
+    """Draw a symbol `size` screen pixels wide, in the middle of a pixmap with that device pixel ratio."""
     side = round((size + 5) * ratio)
     pixmap = QPixmap(side, side)
     pixmap.fill(Qt.GlobalColor.transparent)

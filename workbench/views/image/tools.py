@@ -27,7 +27,7 @@ _STEPS = 20
 
 
 class ToolStrip(QFrame):
-    """Readout at the left, buttons at the right."""
+    """Strip with the readout at the left, buttons at the right."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -50,12 +50,12 @@ class ToolStrip(QFrame):
             self._row.addWidget(button)
 
     def add_tool(self, widget: QWidget) -> None:
-        """A widget before the buttons."""
+        """Add a widget before the buttons."""
         self._row.insertWidget(self._place_for_tools, widget)
         self._place_for_tools += 1
 
     def say_layers(self, titles: Sequence[str]) -> None:
-        """What is drawn, in the tip of the menu of layers: nothing where the legend says it."""
+        """List the layers in the tip of their menu; nothing where the legend lists them."""
         self.layers.setToolTip("\n".join((self.layers.accessibleName(), *titles)))
 
     def _button(self, symbol: str, tip: str) -> QToolButton:
@@ -69,7 +69,9 @@ class ToolStrip(QFrame):
 
 
 class ToneMenu(QMenu):
-    """Two sliders: how bright, and how much the dark is lifted. Only the screen changes, never what is measured."""
+    """Menu with two sliders: brightness, and how much the dark is lifted. Only the screen changes, never what is
+    measured.
+    """
 
     changed = Signal(float, float)
     """Gain and gamma."""
@@ -105,11 +107,11 @@ class ToneMenu(QMenu):
 
     @property
     def values(self) -> tuple[float, float]:
-        """Gain and gamma."""
+        """Values of gain and gamma."""
         return 2.0 ** (self.gain.value() / _STEPS), 2.0 ** (self.gamma.value() / _STEPS)
 
     def reset(self) -> None:
-        """As the picture is."""
+        """Reset to the tone of the picture."""
         self.gain.setValue(0)
         self.gamma.setValue(0)
 

@@ -47,7 +47,7 @@ _KEYS = {Qt.Key.Key_F, Qt.Key.Key_1, Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.K
 
 
 class ImageView(QWidget):
-    """Shows one picture; layers lie over it by name, in the coordinates of the full-resolution picture.
+    """View of one picture; layers lie over it by name, in the coordinates of the full-resolution picture.
 
     The centre of the first pixel is (0, 0). Setting a layer replaces the one of that name; `title` puts it into the
     legend and the layers menu. Wheel: zoom about the cursor; drag or arrows: pan; F: fit; 1: pixel on pixel; +, −.
@@ -141,16 +141,16 @@ class ImageView(QWidget):
         self._arrange()
 
     def announce(self, sentence: str) -> None:
-        """Say a sentence large in the picture, for two seconds at least; "": nothing any more, nor beside an offer."""
+        """Show a sentence large in the picture, for two seconds at least; "": none, nor beside an offer."""
         self._announcement.say(sentence if self.offered.isHidden() else "")
 
     def offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
-        """Offer something over the picture, by a sentence and a button; "": nothing any more."""
+        """Offer an action over the picture, by a sentence and a button; "" ends the offer."""
         self.offered.say(sentence, button, do)
 
     @property
     def announced(self) -> str:
-        """What is said large in the picture now."""
+        """Sentence shown large in the picture."""
         return "" if self._announcement.isHidden() else self._announcement.text()
 
     @property
@@ -160,18 +160,18 @@ class ImageView(QWidget):
 
     @property
     def empty_state(self) -> EmptyState:
-        """What stands there without a picture."""
+        """Sentence and button shown without a picture."""
         return self._empty
 
     # ---- the view
 
     def fit(self) -> None:
-        """Show the whole picture, and go on doing so when the window changes its size."""
+        """Show the whole picture, also after the window changes its size."""
         self._fitted = True
         self._box.fit()
 
     def one_to_one(self) -> None:
-        """One pixel of the picture on one of the screen."""
+        """Show one pixel of the picture on one of the screen."""
         self._fitted = False
         self._box.show_at_zoom(1.0 / self.devicePixelRatioF())
 
@@ -187,27 +187,27 @@ class ImageView(QWidget):
 
     @property
     def zoom(self) -> float:
-        """How many pixels of the screen one of the picture is wide."""
+        """Width of one pixel of the picture in pixels of the screen."""
         return self.devicePixelRatioF() / self._box.pixel
 
     def to_screen(self, u: float, v: float) -> QPoint:
-        """Where a place of the picture is in `canvas`."""
+        """Convert a place of the picture to one in `canvas`."""
         place = self._box.mapViewToScene(QPointF(u, v))
         return QPoint(round(place.x()), round(place.y()))
 
     @property
     def canvas(self) -> QWidget:
-        """The widget the picture is drawn on, which takes the mouse."""
+        """Widget on which the picture is drawn, which takes the mouse."""
         viewport: QWidget = self._canvas.viewport()
         return viewport
 
     @property
     def readout(self) -> str:
-        """What is said about the pixel under the mouse."""
+        """Text on the pixel under the mouse."""
         return self._strip.readout.text()
 
     def add_tool(self, widget: QWidget) -> None:
-        """A page's own widget in the strip under the picture."""
+        """Add a page's own widget in the strip under the picture."""
         self._strip.add_tool(widget)
 
     def set_legend_visible(self, visible: bool) -> None:
@@ -217,11 +217,11 @@ class ImageView(QWidget):
 
     @property
     def legend_titles(self) -> list[str]:
-        """What the legend lists; empty while it is hidden."""
+        """Titles in the legend; empty while it is hidden."""
         return [] if self._legend.isHidden() else self._legend.titles
 
     def set_tone(self, gain: float, gamma: float) -> None:
-        """Brighten the picture on the screen: grey · gain, then to the power 1/gamma."""
+        """Set the tone on the screen: grey · gain, then to the power 1/gamma."""
         self._picture.set_tone(gain, gamma)
 
     # ---- layers
@@ -237,7 +237,7 @@ class ImageView(QWidget):
         tips: Sequence[str] | None = None,
         title: str = "",
     ) -> None:
-        """Points (N, 2); `colour` for all or (N, 3 or 4) uint8; `size` in screen pixels; `tips` show on hover."""
+        """Show points (N, 2); `colour` for all or (N, 3 or 4) uint8."""
         self._layers.put(name, PointsLayer(uv, colour, symbol, size, tips, title))
 
     def set_lines(
@@ -269,7 +269,7 @@ class ImageView(QWidget):
         factor: float,
         title: str = "",
     ) -> None:
-        """Arrows from uv (N, 2) to uv + factor · d_uv."""
+        """Show arrows from uv (N, 2) to uv + factor · d_uv."""
         self._layers.put(name, VectorsLayer(uv, d_uv, factor, RESIDUAL, title))
 
     def set_cells(self, name: str, grid: ArrayLike, colour: ColourLike = COVERED, *, title: str = "") -> None:
@@ -293,21 +293,21 @@ class ImageView(QWidget):
         self._layers.put(name, PolygonLayer(uv, colour, editable, title, label))
 
     def remove_layer(self, name: str) -> None:
-        """Take a layer away; none of that name is no error."""
+        """Remove a layer; none of that name is no error."""
         self._layers.remove(name)
 
     def clear_layers(self) -> None:
-        """Take all layers away."""
+        """Remove all layers."""
         self._layers.clear()
 
     def layer_names(self) -> tuple[str, ...]:
-        """The layers there are, from the lowest to the topmost."""
+        """List the layers from the lowest to the topmost."""
         return tuple(self._layers)
 
     # ---- drawing
 
     def start_polygon(self, name: str) -> None:
-        """Let the user draw: click corners; double-click or Enter closes, Backspace takes one back, Esc cancels.
+        """Start drawing: click corners; double-click or Enter closes, Backspace removes one, Esc cancels.
 
         By keys alone: arrows move the pencil (with Shift in leaps), Space sets a corner.
         """
@@ -315,7 +315,7 @@ class ImageView(QWidget):
         self.setFocus()
 
     def start_lasso(self, name: str) -> None:
-        """Let the user draw round a region with the button held down."""
+        """Start drawing round a region with the button held down."""
         self._drawing.start(name, "lasso")
         self.setFocus()
 

@@ -20,7 +20,7 @@ _SIGNS: dict[State, tuple[str, str]] = {
 
 
 class ChecksCard(QFrame):
-    """One row a check: a tick, a cross or a question mark, what was looked at, and a sentence.
+    """Card with one row a check: a tick, a cross or a question mark, its name, and a sentence.
 
     Hidden while there are no checks.
     """
@@ -41,7 +41,7 @@ class ChecksCard(QFrame):
         self.hide()
 
     def show_checks(self, checks: Sequence[Check]) -> None:
-        """Show these instead."""
+        """Show these checks."""
         if tuple(checks) != self._checks:
             self._checks = tuple(checks)
             self._show()
@@ -49,7 +49,7 @@ class ChecksCard(QFrame):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What is said of each check."""
+        """Sentences of all checks."""
         return tuple(said.text() for _, _, said in self._rows[: len(self._checks)])
 
     def _show(self) -> None:

@@ -94,7 +94,7 @@ class _Texts(QAbstractTableModel):
 
 
 class CopyingTable(QTableView):
-    """A table that asks its owner when something is to be copied."""
+    """Table that asks its owner when something is to be copied."""
 
     copy_wanted = Signal()
 
@@ -106,7 +106,9 @@ class CopyingTable(QTableView):
 
 
 class DataTable(QWidget):
-    """Rows of texts; numbers stand right. Ctrl+C copies what is chosen, tabs between columns, headers first."""
+    """Table of rows of texts; numbers are aligned to the right. Ctrl+C copies what is chosen, tabs between columns,
+    headers first.
+    """
 
     current_row_changed = Signal(int)
     """The row gone to, −1 for none."""
@@ -139,32 +141,32 @@ class DataTable(QWidget):
         in_column(self.table, on=self)
 
     def let_shrink(self, column: int) -> None:
-        """Let one column take the room that the others leave, cut where that is too little: its tip tells it whole."""
+        """Give one column the room that the others leave, cut where that is too little: its tip tells it whole."""
         self._shrinking, header = True, self.table.horizontalHeader()
         header.setStretchLastSection(False)
         header.setMinimumSectionSize(LEAST_PX)
         header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
 
     def show_rows(self, most: int) -> None:
-        """Be high enough for all the rows there are now, or for so many."""
+        """Set the height for all the rows there are now, or for at most so many."""
         table = self.table
         rows = min(self._model.rowCount(), most) * table.verticalHeader().defaultSectionSize()
         table.setMinimumHeight(table.horizontalHeader().sizeHint().height() + rows + 2 * table.frameWidth())
 
     def whole_width(self) -> int:
-        """So wide, all columns are seen whole, beside a bar to scroll the rows with."""
+        """Return the width in px at which all columns are whole, beside the scroll bar."""
         table, header = self.table, self.table.horizontalHeader()
         columns = range(len(self._model.titles))
         wanted = sum(max(table.sizeHintForColumn(one), header.sectionSizeHint(one)) for one in columns)
         return wanted + 2 * table.frameWidth() + table.verticalScrollBar().sizeHint().width()
 
     def set_headers(self, headers: Sequence[Header]) -> None:
-        """The columns; rows shown before are gone."""
+        """Set the columns; rows shown before are removed."""
         titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]
         self._model.set_titles(titles, [tip[0] if tip else "" for _, _, *tip in headers])
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None = None) -> None:
-        """Rows of texts, as many as there are columns; `tips` one a row. The chosen row and the scrolling are kept.
+        """Set rows of texts, as many as there are columns; `tips` one a row. The chosen row and the scrolling are kept.
 
         Raises
         ------
@@ -179,19 +181,22 @@ class DataTable(QWidget):
             self.table.horizontalHeader().setStretchLastSection(not self._model.ends_with_numbers)
 
     def rows(self) -> tuple[tuple[str, ...], ...]:
-        """The texts as they stand."""
+        """Return the present texts."""
         return tuple(tuple(row) for row in self._model.rows)
 
     def current_row(self) -> int:
-        """The row gone to, −1 for none."""
+        """Return the current row, −1 for none."""
         return self.table.currentIndex().row()
 
     def set_current_row(self, row: int) -> None:
-        """Go to a row; −1 to none."""
+        """Make a row the current one; −1 for none."""
         self.table.setCurrentIndex(self._model.index(row, 0))
 
     def copied(self) -> str:
-        """What Ctrl+C copies: the chosen rows, or all if none is chosen, with the headers; no text is a formula."""
+        """Return the text for Ctrl+C: the chosen rows, or all if none is chosen, with the headers.
+
+        No text is a formula.
+        """
         chosen = sorted({index.row() for index in self.table.selectedIndexes()}) or range(len(self._model.rows))
         lines = (self._model.titles, *(self._model.rows[row] for row in chosen))
         return "\n".join("\t".join(cell if _is_number(cell) else harmless(cell) for cell in line) for line in lines)

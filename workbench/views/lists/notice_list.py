@@ -29,7 +29,7 @@ SYMBOLS = {
 
 
 class NoticeList(QWidget):
-    """All messages of the session with their details; copies to the clipboard."""
+    """List of all messages of the session with their details; it copies to the clipboard."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -65,7 +65,7 @@ class NoticeList(QWidget):
         self._list.setCurrentIndex(self._model.index_of(row.key))
 
     def count(self) -> int:
-        """How many messages are listed."""
+        """Return the number of messages."""
         return len(self._notices)
 
     def _show(self, index: QModelIndex) -> None:
@@ -83,7 +83,7 @@ class NoticeList(QWidget):
 
 
 class Banner(QFrame):
-    """What must not be overlooked, across the top of `page` and over it: nothing moves as it comes and goes.
+    """Banner of an important message across the top of `page` and over it: nothing moves as it appears.
 
     It stays until closed or replaced. Of `head`, the line of the page's title, it covers all, however short it is.
     """
@@ -118,7 +118,7 @@ class Banner(QFrame):
         self._place()
 
     def text(self) -> str:
-        """The message shown."""
+        """Return the message shown."""
         return self._text if not self.isHidden() else ""
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

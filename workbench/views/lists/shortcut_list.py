@@ -16,7 +16,7 @@ MEANING_WIDTH = 245
 
 
 class ShortcutList(QDialog):
-    """All keys and what they do."""
+    """List of all keys and what they do."""
 
     def __init__(self, keys: Sequence[tuple[str, str]], parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -39,5 +39,5 @@ class ShortcutList(QDialog):
 
 
 def native(keys: str) -> str:
-    """Keys as menus call them, on this system and in the window's language: "Left, Ctrl+M" is "Links, Strg+M"."""
+    """Write keys as on this system and in the window's language: "Left, Ctrl+M" is "Links, Strg+M"."""
     return re.sub(r"[^\s,…]+", lambda key: QKeySequence(key[0]).toString(QKeySequence.SequenceFormat.NativeText), keys)

@@ -21,7 +21,7 @@ BADGES = {
 
 
 class StepRail(QFrame):
-    """A column of buttons, one a step, each with a badge for its state."""
+    """Column of buttons, one a step, each with a badge for its state."""
 
     chosen = Signal(str)
 
@@ -71,7 +71,7 @@ class StepRail(QFrame):
         self._buttons[name].setChecked(True)
 
     def set_states(self, states: Mapping[str, tuple[str, str]]) -> None:
-        """`states`: for each step its state (a key of BADGES) and the sentence that explains it."""
+        """Set for each step its state (a key of BADGES) and the sentence that explains it."""
         others = [name for name, (state, _) in states.items() if state != self._states[name]]
         for name, (state, sentence) in states.items():
             self._states[name] = state
@@ -81,7 +81,7 @@ class StepRail(QFrame):
         self._show_badges(others)
 
     def state_of(self, name: str) -> str:
-        """The state shown for a step."""
+        """Return the state shown for a step."""
         return self._states[name]
 
     def _set_tips(self) -> None:

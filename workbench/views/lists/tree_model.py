@@ -19,7 +19,7 @@ _TOP = 0
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """What a row says in one column.
+    """Cell of a row in one column.
 
     `ticked` is None where there is nothing to tick, `edited` the text that can be edited in its place, None where none
     can; `more` is shown by delegates.
@@ -36,7 +36,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class TreeRow:
-    """A row; the one of the same `key` is the same row, whatever it says."""
+    """Row; one of the same `key` is the same row, whatever its texts."""
 
     key: str
     cells: tuple[Cell, ...]
@@ -44,7 +44,7 @@ class TreeRow:
 
 
 class TreeModel(QAbstractItemModel):
-    """Rows for a list or a tree, with or without titles."""
+    """Model of rows for a list or a tree, with or without titles."""
 
     ticked = Signal(str, bool)
     """Key of a row whose box was clicked, and whether it is to be ticked."""
@@ -60,7 +60,7 @@ class TreeModel(QAbstractItemModel):
         self._next = count(_TOP + 1)
 
     def set_rows(self, rows: Sequence[TreeRow]) -> None:
-        """Show these: rows that were there say what they say now, others come or go."""
+        """Set the rows: known ones are updated, others are added or removed."""
         before, now = [row.key for row in self._rows], [row.key for row in rows]
         first = _alike(before, now)
         last = _alike(before[first:][::-1], now[first:][::-1])
@@ -93,14 +93,14 @@ class TreeModel(QAbstractItemModel):
             self.dataChanged.emit(self.index(0, 0, above), self.index(now - 1, last, above))
 
     def key(self, index: _Index) -> str:
-        """Of the row that an index is of, or is below; "" for an index of nothing."""
+        """Return the key of the row that an index is of, or is below; "" for an invalid index."""
         if not index.isValid():
             return ""
         above = index.parent()
         return self._rows[above.row() if above.isValid() else index.row()].key
 
     def index_of(self, key: str) -> QModelIndex:
-        """Where the row of this key begins; an index of nothing if there is none."""
+        """Return the index of the row of this key; an invalid one if there is none."""
         return next((self.index(number, 0) for number, row in enumerate(self._rows) if row.key == key), QModelIndex())
 
     # ---- what Qt asks
@@ -150,7 +150,7 @@ class TreeModel(QAbstractItemModel):
         return cell.more.get(role)
 
     def setData(self, index: _Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
-        """A tick or another text is asked for; it is there once `set_rows` says so."""
+        """Emit that a tick or another text is requested; it is shown once `set_rows` has it."""
         if role == Qt.ItemDataRole.EditRole:
             self.edited.emit(self.key(index), str(value))
             return True
@@ -171,7 +171,7 @@ class TreeModel(QAbstractItemModel):
 
 
 class TreeList(QTreeView):
-    """Shows such rows, those below others unfolded."""
+    """List of such rows, those below others unfolded."""
 
     chosen = Signal(str)
     """Key of the row that someone went to, "" for none; not where the rows themselves changed."""
@@ -190,11 +190,11 @@ class TreeList(QTreeView):
         self.selectionModel().currentChanged.connect(self._gone_to)
 
     def key_at(self, at: QPoint) -> str:
-        """Key of the row under a point of the viewport; "" if there is none."""
+        """Return the key of the row under a point of the viewport; "" if there is none."""
         return self._rows.key(self.indexAt(at))
 
     def set_rows(self, rows: Sequence[TreeRow]) -> None:
-        """Show these."""
+        """Show these rows."""
         self._showing = True
         self._rows.set_rows(rows)
         self._showing = False

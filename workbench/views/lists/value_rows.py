@@ -40,7 +40,7 @@ ValueRow = tuple[str, str, str, Level]
 
 
 class ValueRows(QWidget):
-    """Label at the left, value with unit at the right, and an icon where a value is good or not.
+    """Rows with label at the left, value with unit at the right, and an icon where a value is good or not.
 
     It is at least `least_width` pixels wide, and never narrower than its values. Further rows are folded.
     """
@@ -66,7 +66,7 @@ class ValueRows(QWidget):
         self._fold()
 
     def set_rows(self, rows: Sequence[ValueRow], more: Sequence[ValueRow] = ()) -> None:
-        """(label, text with unit, tip, level) each, from the top, and those that are folded."""
+        """Set rows of (label, text with unit, tip, level) each, from the top, and those that are folded."""
         self._rows, self._in_sight = (*rows, *more), len(rows)
         while len(self._labels) < len(self._rows):
             self._add_row()
@@ -84,7 +84,7 @@ class ValueRows(QWidget):
         self.more.setToolTip(tr("What an auditor and a metrologist want to know of it as well"))
 
     def text_of(self, label: str) -> str:
-        """The value shown beside a label, "" if there is none."""
+        """Return the value shown beside a label, "" if there is none."""
         return next((text for name, text, _, _ in self._rows if name == label), "")
 
     def minimumSizeHint(self) -> QSize:
@@ -128,7 +128,7 @@ class ValueRows(QWidget):
 
 
 class Verdict(QFrame):
-    """Whether the part conforms: an icon, one word, one sentence."""
+    """Verdict on the part: an icon, one word, one sentence."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -149,7 +149,7 @@ class Verdict(QFrame):
 
     @property
     def text(self) -> str:
-        """The word shown."""
+        """Word that is shown."""
         return self._word.text()
 
     def changeEvent(self, event: QEvent) -> None:

@@ -56,7 +56,7 @@ VALUE_ROLE = int(Qt.ItemDataRole.UserRole)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ListRow:
-    """A view, pose or frame.
+    """Row of a view, pose or frame.
 
     `text` is its value with the unit; by `value` it is sorted and its bar is long. `reason` says why it is not used.
     `thumbnail` is (rows, columns) or (rows, columns, 3) of uint8. `title` is shown instead of `name` if given.
@@ -72,7 +72,7 @@ class ListRow:
 
 
 class RowsModel(QAbstractTableModel):
-    """Rows with two columns: what it is, and its value. Sorted here; the order given comes back at column −1."""
+    """Model of rows with two columns: the item, and its value. Sorted here; the order given comes back at column −1."""
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -88,16 +88,16 @@ class RowsModel(QAbstractTableModel):
 
     @property
     def rows(self) -> Sequence[ListRow]:
-        """The rows as they stand."""
+        """Present rows."""
         return self._rows
 
     def set_headers(self, what: str, value: str) -> None:
-        """Name both columns."""
+        """Set the titles of both columns."""
         self._headers = (what, value)
         self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, 1)
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
-        """Replace all rows; if they are the same ones in the same order, only what they say changes."""
+        """Replace all rows; if they are the same ones in the same order, only their texts change."""
         before = [row.name for row in self._rows]
         self._given = tuple(rows)
         self.largest = max((row.value for row in rows if row.value is not None and np.isfinite(row.value)), default=0.0)
@@ -120,7 +120,7 @@ class RowsModel(QAbstractTableModel):
         self.dataChanged.emit(self.index(row, 0), self.index(row, 1))
 
     def row_of(self, name: str) -> int:
-        """Where a row stands, −1 if it is not there."""
+        """Return the place of a row, −1 if it is not there."""
         return self._places.get(name, -1)
 
     def rowCount(self, parent: _Index = QModelIndex()) -> int:  # noqa: B008
@@ -221,7 +221,7 @@ _PAD, _BAR = 4, 4
 
 
 class RowDelegate(QStyledItemDelegate):
-    """Check box, thumbnail, name, and below it why it was left out; the value over its bar."""
+    """Delegate that draws check box, thumbnail, name, and below it why it was left out; the value over its bar."""
 
     thumbnail_missing = Signal(str)
     """Name of a row in sight whose thumbnail comes later."""
@@ -313,12 +313,12 @@ class RowDelegate(QStyledItemDelegate):
 
 
 def row_height(metrics: QFontMetrics) -> int:
-    """Two lines of text, or a thumbnail."""
+    """Return the height of two lines of text, or a thumbnail."""
     return max(2 * metrics.height() + 2 * _PAD, THUMBNAIL.height() + 6)
 
 
 class CheckingTable(QTableView):
-    """A table that says when check boxes are meant; clicking one leaves the selection alone.
+    """Table that emits clicks on check boxes, which leave the selection alone.
 
     Its current row stays in sight in a lower table, until it is scrolled away.
     """
@@ -372,7 +372,9 @@ class CheckingTable(QTableView):
 
 
 class ViewList(QWidget):
-    """Rows with a check box each; Space checks or unchecks all chosen rows. Headers sort, a third click as given."""
+    """List of rows with a check box each; Space checks or unchecks all chosen rows. Headers sort, a third click as
+    given.
+    """
 
     toggled = Signal(str, bool)
     """Name and whether it is to be used; once for each row. Connect this or `toggled_together`, not both."""
@@ -405,7 +407,7 @@ class ViewList(QWidget):
         in_column(self.table, on=self)
 
     def set_headers(self, what: str, value: str) -> None:
-        """Name both columns: what is listed, and the value with its unit."""
+        """Set the titles of both columns: the items, and the value with its unit."""
         self.model.set_headers(what, value)
         self.table.setAccessibleName(what)
         header = self.table.horizontalHeader()
@@ -429,23 +431,23 @@ class ViewList(QWidget):
         self._tell_current()
 
     def rows(self) -> tuple[ListRow, ...]:
-        """The rows as they stand."""
+        """Return the present rows."""
         return tuple(self.model.rows)
 
     def current(self) -> str:
-        """Name of the current row, "" for none."""
+        """Return the name of the current row, "" for none."""
         index = self.table.currentIndex()
         return self.model.rows[index.row()].name if index.isValid() else ""
 
     def set_current(self, name: str) -> None:
-        """Go to a row without telling; a name that is not there changes nothing."""
+        """Make a row the current one without emitting; a name that is not there changes nothing."""
         place = self.model.row_of(name)
         if place >= 0 and name != self.current():
             self._told = name
             self.table.setCurrentIndex(self.model.index(place, 0))
 
     def chosen(self) -> tuple[str, ...]:
-        """Names of the selected rows."""
+        """Return the names of the selected rows."""
         return tuple(self.model.rows[index.row()].name for index in self.table.selectionModel().selectedRows())
 
     def changeEvent(self, event: QEvent) -> None:

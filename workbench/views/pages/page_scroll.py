@@ -32,7 +32,7 @@ DIM = 0.45
 
 
 class PageSheet(QWidget):
-    """One page. Drawn quickly until `sharpen` has scaled it well."""
+    """Page of a document. Drawn quickly until `sharpen` has scaled it well."""
 
     def __init__(self, page: NDArray[np.uint8], number: int) -> None:
         super().__init__()
@@ -57,13 +57,13 @@ class PageSheet(QWidget):
         self.update()
 
     def set_width(self, width: int) -> None:
-        """Be so wide, in the page's proportions."""
+        """Set the width, in the page's proportions."""
         size = QSize(width, round(width * self._image.height() / self._image.width()))
         if size != self.size():
             self.setFixedSize(size)
 
     def set_dim(self, dim: bool) -> None:
-        """Whether the page is no longer what it should say."""
+        """Set whether the page is out of date."""
         if dim != self._dim:
             self._dim = dim
             self.update()
@@ -99,7 +99,7 @@ GAP_PX = 14
 
 
 class PageScroll(QWidget):
-    """Shows pages; Ctrl with the wheel, the keys + − 0 and the buttons make them larger or smaller."""
+    """View of pages; Ctrl with the wheel, the keys + − 0 and the buttons make them larger or smaller."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -149,11 +149,11 @@ class PageScroll(QWidget):
         self._sharpen.start(0)
 
     def set_message(self, text: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
-        """What is said where there are no pages, and a button if something can be done about it."""
+        """Set the sentence shown where there are no pages, and a button if something can be done about it."""
         self._empty.say(text, button, on_button)
 
     def set_note(self, text: str) -> None:
-        """Say over the pages why they are not what they should be, and dim them; "" when they are."""
+        """Show over the pages why they are out of date, and dim them; "" when they are not."""
         if text != self._note.text() or bool(text) == self._note.isHidden():
             say(self._note, text)
             self._place_note()
@@ -162,16 +162,16 @@ class PageScroll(QWidget):
 
     @property
     def note(self) -> str:
-        """What is said over the pages."""
+        """Note over the pages."""
         return self._note.text()
 
     @property
     def message(self) -> str:
-        """What is said where there are no pages, "" where there are some."""
+        """Sentence where there are no pages, "" where there are some."""
         return "" if self.sheets else self._empty.message
 
     def count(self) -> int:
-        """How many pages are shown."""
+        """Return the number of pages."""
         return len(self.sheets)
 
     def zoom(self, factor: float) -> None:

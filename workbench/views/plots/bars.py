@@ -27,7 +27,7 @@ AMBER = "#E0A52C"
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """One view or pose; `value` None where there is none. `tip` is added to name and value on hover."""
+    """Bar of one view or pose; `value` None where there is none. `tip` is added to name and value on hover."""
 
     name: str
     value: float | None
@@ -36,7 +36,7 @@ class Bar:
 
 
 class BarsWithThreshold(Plot):
-    """One bar a view: filled when used, hollow when left out, amber above the threshold.
+    """Plot of one bar a view: filled when used, hollow when left out, amber above the threshold.
 
     The threshold is dragged by the mouse, or moved by the Up and Down keys; Left and Right go from bar to bar.
     """
@@ -78,7 +78,7 @@ class BarsWithThreshold(Plot):
 
     @property
     def threshold(self) -> float | None:
-        """Where the line is."""
+        """Value of the threshold."""
         return self._threshold
 
     def clear(self, message: str = "") -> None:

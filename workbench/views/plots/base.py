@@ -39,13 +39,13 @@ _NUMBER = re.compile(r"[−-]?\d+((?P<point>[.,])(?P<decimals>\d+))?")
 
 
 class Axis(pg.AxisItem):  # type: ignore[misc]
-    """An axis whose numbers are those of the window's language."""
+    """Axis with numbers in the window's language."""
 
     def tickStrings(self, values: Any, scale: float, spacing: float) -> list[str]:
         return [numeral(text) for text in super().tickStrings(values, scale, spacing)]
 
     def generateDrawSpecs(self, painter: QPainter) -> Any:
-        """With as many decimals at each of its numbers; pyqtgraph gives those between the coarse ones more."""
+        """Draw all numbers with equal decimals; pyqtgraph gives those between the coarse ones more."""
         specs = super().generateDrawSpecs(painter)
         if specs is None:
             return None
@@ -65,7 +65,7 @@ def _padded(text: str, point: str, decimals: int) -> str:
 
 
 class Canvas(pg.PlotWidget):  # type: ignore[misc]
-    """A plot that leaves the wheel to the panel it stands in."""
+    """Plot widget that leaves the wheel to the panel it is in."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()
@@ -96,7 +96,8 @@ class _Field(QWidget):
 
 
 class Plot(QWidget):
-    """A plot. A subclass keeps what it was given, and draws it in `_draw` with the colours of the theme.
+    """Plot with an empty state. A subclass keeps what it was given, and draws it in `_draw` with the colours of the
+    theme.
 
     What it is drawn on takes as long to make as all else of a panel together, and most plots have nothing to show
     yet: it is made when there is something.
@@ -112,7 +113,7 @@ class Plot(QWidget):
         self.clear()
 
     def clear(self, message: str = "") -> None:
-        """Show nothing but a sentence."""
+        """Show only a sentence."""
         if self._canvas is not None:
             self._item.clear()
             self._show_axes(False)
@@ -121,21 +122,21 @@ class Plot(QWidget):
 
     @property
     def empty_state(self) -> EmptyState:
-        """What stands there while there is nothing to show."""
+        """Sentence and button shown while there is no plot."""
         return self._empty
 
     @property
     def canvas(self) -> QWidget:
-        """The widget it is drawn on, which takes the mouse; while there is nothing to show, the one it will be on."""
+        """Widget on which the plot is drawn, which takes the mouse."""
         return self._field if self._canvas is None else self._canvas.viewport()
 
     def to_screen(self, x: float, y: float) -> QPointF:
-        """Where a place of the plot is in `canvas`."""
+        """Convert a place of the plot to one in `canvas`."""
         place: QPointF = self._box.mapViewToScene(QPointF(x, y))
         return place
 
     def axis_text(self, side: str) -> str:
-        """What stands at an axis: "left", "bottom"."""
+        """Return the text of an axis: "left", "bottom"."""
         return self._labels.get(side, "")
 
     def changeEvent(self, event: QEvent) -> None:
@@ -254,21 +255,21 @@ class Plot(QWidget):
 
 
 def small_font() -> QFont:
-    """The font of ticks and words in plots."""
+    """Make the font of ticks and words in plots."""
     font = QFont(QGuiApplication.font())
     font.setPixelSize(_TICK_PIXELS)
     return font
 
 
 def tinted(colour: str, alpha: int) -> QColor:
-    """A colour made transparent, 0 … 255."""
+    """Make a colour transparent, 0 … 255."""
     tint = QColor(colour)
     tint.setAlpha(alpha)
     return tint
 
 
 def written(value: float, step: float) -> str:
-    """A value with as many decimals as a step of this size needs, and a true minus."""
+    """Write a value with as many decimals as a step of this size needs, and a true minus."""
     decimals = 0
     while decimals < 9 and step < 0.999 * 10.0**-decimals:
         decimals += 1

@@ -29,7 +29,7 @@ class _Chart:
 
 
 class ControlPlot(Plot):
-    """One point a value, a cross where it is not good; dashed the limits, dotted their middle."""
+    """Plot of one point a value, a cross where it is not good; dashed the limits, dotted their middle."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._chart: _Chart | None = None

@@ -28,7 +28,7 @@ LEGEND_LEFT, LEGEND_RIGHT = (8, 6), (-8, 6)
 
 
 class LineChart(Plot):
-    """Curves over one axis."""
+    """Chart of curves over one axis."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._curves: dict[str, _Curve] = {}
@@ -44,7 +44,7 @@ class LineChart(Plot):
     def set_curve(
         self, name: str, x: ArrayLike, y: ArrayLike, *, colour: ColourLike = "", title: str = "", points: bool = False
     ) -> None:
-        """A curve, instead of the one of that name; NaN leaves a gap. `title` stands in the legend."""
+        """Set a curve, instead of the one of that name; NaN leaves a gap. `title` stands in the legend."""
         across, up = (np.asarray(values, dtype=np.float64).reshape(-1) for values in (x, y))
         self._curves[name] = _Curve(across, up, colour, title, points)
         self._redraw()

@@ -22,7 +22,7 @@ _BAR = 14
 
 
 class ColourBar(QWidget):
-    """A vertical bar with ticks."""
+    """Vertical colour bar with ticks."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -32,7 +32,7 @@ class ColourBar(QWidget):
         self.setFixedWidth(64)
 
     def set_scale(self, colours: NDArray[np.uint8], limits: tuple[float, float], title: str) -> None:
-        """Colours (K, 3) from low to high, their limits, and what they mean."""
+        """Set colours (K, 3) from low to high, their limits, and their title."""
         self._colours, self._limits, self.title = colours, limits, title
         self.setToolTip(title)
         self.setAccessibleName(title)
@@ -64,7 +64,7 @@ MapName = Literal["viridis", "plasma", "deviation", "sigma"]
 
 
 class HeatMap(Plot):
-    """Values of cells that cover the picture evenly, as colours, with the colour bar beside; NaN is left blank."""
+    """Map of values of cells that cover the picture evenly, with the colour bar beside; NaN is left blank."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._values = np.zeros((0, 0))
@@ -92,7 +92,7 @@ class HeatMap(Plot):
         unit: str,
         colour_map: MapName = "viridis",
     ) -> None:
-        """Values (rows, columns) over a picture of `size` (width, height) in pixels; row 0 is at the top."""
+        """Set values (rows, columns) over a picture of `size` (width, height) in px; row 0 is at the top."""
         self._values = np.asarray(values, dtype=np.float64)
         finite = self._values[np.isfinite(self._values)]
         if self._values.ndim != 2 or not finite.size:

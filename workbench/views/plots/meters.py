@@ -29,7 +29,7 @@ _NEEDLE = 5
 
 
 class Meter(QWidget):
-    """A horizontal gauge: zones of good and bad, a needle, the value as text. The zone is named in words as well."""
+    """Horizontal gauge: zones of good and bad, a needle, the value as text. The zone is named in words as well."""
 
     def __init__(
         self,
@@ -70,18 +70,18 @@ class Meter(QWidget):
 
     @property
     def level(self) -> Level:
-        """The zone the needle is in."""
+        """Level of the zone the needle is in."""
         if self._value is None:
             return ""
         return next((level for end, level in self._zones if self._value <= end), self._zones[-1][1])
 
     @property
     def said(self) -> str:
-        """The value and its zone in words."""
+        """Value and its zone in words."""
         return " · ".join(part for part in (self._text, self._names.get(self.level, "")) if part) or "–"
 
     def share(self, value: float) -> float:
-        """Where a value is on the scale, 0 … 1; values beyond the ends are at the ends."""
+        """Compute the place of a value on the scale, 0 … 1; values beyond the ends are at the ends."""
         low, high = self._minimum, self._zones[-1][0]
         value = min(max(value, low), high)
         if self._logarithmic:
@@ -133,7 +133,7 @@ class Meter(QWidget):
 
 
 class Steady(QObject):
-    """What is said changes at most once a second, so nothing flickers; the last of what was wanted comes then."""
+    """Filter that changes a shown value at most once a second, so nothing flickers; the last one comes then."""
 
     shown = Signal(object)
     """What is to be said from now on."""
@@ -149,7 +149,7 @@ class Steady(QObject):
         self._clock.timeout.connect(self._show)
 
     def want(self, said: Any, *, at_once: bool = False) -> None:
-        """Have it said: now where it may not wait or the last has stood long enough, else when it has."""
+        """Show a value: now where it may not wait or the last has been shown long enough, else later."""
         self._wanted = said
         if said == self.now:
             self._clock.stop()
@@ -162,7 +162,7 @@ class Steady(QObject):
             self._clock.start(math.ceil(left))
 
     def wait_no_longer(self) -> None:
-        """Drop what waits, as the widget is hidden."""
+        """Drop the waiting value, as the widget is hidden."""
         self._clock.stop()
 
     def _show(self) -> None:
@@ -172,7 +172,9 @@ class Steady(QObject):
 
 
 class HintBar(QFrame):
-    """What to do now. A sentence stays for at least a second, so nothing flickers; an empty list stays calm too."""
+    """Bar with a hint on what to do now. A sentence stays for at least a second, so nothing flickers; an empty list
+    stays calm too.
+    """
 
     def __init__(self, idle: str = "", parent: QWidget | None = None) -> None:
         """`idle` is shown, muted, while there is no hint."""
@@ -189,12 +191,12 @@ class HintBar(QFrame):
         self._dress()
 
     def set_hints(self, hints: Sequence[str]) -> None:
-        """The sentences that hold now, the most important first."""
+        """Set the present hints, the most important first."""
         self._steady.want(tuple(hints), at_once=not self._steady.now)
 
     @property
     def text(self) -> str:
-        """What is shown now."""
+        """Hint that is shown."""
         return self._label.text()
 
     def changeEvent(self, event: QEvent) -> None:

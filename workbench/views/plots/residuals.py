@@ -79,7 +79,7 @@ class ResidualPlot(Plot):
 
     @property
     def factor_used(self) -> int:
-        """How much the vectors are enlarged."""
+        """Factor by which the vectors are enlarged."""
         if chosen := int(self.factor.currentData()):
             return chosen
         typical = float(np.percentile(np.hypot(*self._residuals.T), 90)) if len(self._residuals) else 0.0

@@ -46,7 +46,7 @@ class _ReferenceLine(NamedTuple):
 
 
 class RunChart(Plot):
-    """Repeats of one measurement in order, each with its expanded uncertainty, and what they are compared with."""
+    """Chart of repeats of one measurement in order, each with its expanded uncertainty, and reference lines."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._runs: _Runs | None = None
@@ -149,7 +149,7 @@ class RunChart(Plot):
 
 
 class Histogram(Plot):
-    """How values are spread, with limits."""
+    """Histogram of values, with limits."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._values = np.zeros(0)
@@ -167,7 +167,7 @@ class Histogram(Plot):
         bins: int | None = None,
         limits: Sequence[tuple[float, str]] = (),
     ) -> None:
-        """Values (N,), NaN left out; `limits` are (value, text) of lines across."""
+        """Set values (N,), NaN left out; `limits` are (value, text) of lines across."""
         all_values = np.asarray(values, dtype=np.float64).reshape(-1)
         self._values = all_values[np.isfinite(all_values)]
         self._label, self._unit, self._bins, self._limits = label, unit, bins, tuple(limits)

@@ -18,7 +18,7 @@ _ZONE_PX, _DOT_PX, _GAP_PX = 44, 12, 8
 
 
 class ToleranceBar(QWidget):
-    """The deviation with its interval ±U against the zone of the tolerance, to scale, as on page one of the report."""
+    """Scale of the deviation with its interval ±U against the tolerance zone, as on page one of the report."""
 
     def __init__(self, text_px: int, parent: QWidget | None = None) -> None:
         super().__init__(parent)

@@ -49,7 +49,7 @@ _FACES: dict[str, tuple[list[QPointF], bool]] = {
 
 
 class SceneButtons(QToolBar):
-    """Buttons and their keys; the keys work while the 3D view has the focus."""
+    """Tool bar of buttons with keys; the keys work while the 3D view has the focus."""
 
     view_asked = Signal(str)
     fit_asked = Signal()
@@ -96,11 +96,11 @@ class SceneButtons(QToolBar):
         self.dress()
 
     def action(self, name: str) -> QAction:
-        """One of the buttons' actions: a view's name, "fit", "parallel", "grid", "save"."""
+        """Return the action of a button: a view's name, "fit", "parallel", "grid", "save"."""
         return self._actions[name]
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
-        """A checkable button of the page that shows the view, before the others; `symbol` names its icon."""
+        """Add a checkable button of the page that shows the view, before the others; `symbol` names its icon."""
         if self._tools_end is None:
             self._tools_end = self.insertSeparator(self._actions["front"])
         action = self._add(symbol, text, key, checkable=True)
@@ -110,7 +110,7 @@ class SceneButtons(QToolBar):
         return action
 
     def dress(self) -> None:
-        """Make the icons follow the palette."""
+        """Draw the icons in the colours of the palette."""
         role = QPalette.ColorRole
         palette = QGuiApplication.palette()  # the bar's own is told of a new theme after the view it belongs to
         text, accent = palette.color(role.WindowText), palette.color(role.Highlight)

@@ -38,7 +38,7 @@ ICON_PX, INSET_PX = 13.0, 5.0
 
 
 def plate_sizes(callouts: Sequence[Callout], font: QFont) -> Array:
-    """Width and height (N, 2) of their plates in logical pixels."""
+    """Compute width and height (N, 2) of their plates in logical pixels."""
     metrics = QFontMetricsF(small_font(font))
     sizes = [
         (
@@ -58,7 +58,7 @@ def plate_sizes(callouts: Sequence[Callout], font: QFont) -> Array:
 def lay_out(
     places: Array, sizes: Array, moved: Sequence[tuple[float, float] | None], room: QRectF, kept: Sequence[QRectF]
 ) -> list[QRectF]:
-    """Where the plates stand, all in logical pixels: where their lines would cross they have changed places.
+    """Place the plates, all in logical pixels, so that their lines do not cross.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def _line_end(at: QPointF, plate: QRectF) -> QPointF:
 def paint_callouts(
     painter: QPainter, shown: Sequence[tuple[Callout, QPointF, QRectF]], colours: OverlayColours
 ) -> None:
-    """Paint them, each with its place on the screen and its plate: lines first, so that none runs over a plate."""
+    """Paint the callouts, each with its place on the screen and its plate: lines below all plates."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for _, at, plate in shown:
         for pen in (QPen(colours.ground, 3.5), QPen(colours.text, 1.2)):

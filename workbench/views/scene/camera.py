@@ -27,7 +27,7 @@ BORDER_PX = 10
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Orientation:
-    """Which way is up and which is north, away from the viewer of the front view: unit vectors (3,).
+    """Orientation of a frame: up and north, away from the viewer of the front view, unit vectors (3,).
 
     `origin` (3,) in mm is where the lines of a grid are counted from.
     """
@@ -38,22 +38,22 @@ class Orientation:
 
     @classmethod
     def of(cls, frame: ViewFrame) -> Orientation:
-        """Up is z and north y; of the camera's frame, whose z points away from it and y down, both turned round."""
+        """Make the orientation of a frame: up is z and north y; in the camera's frame both are reversed."""
         _, y, z = frame.axes if frame.kind is not FrameKind.CAMERA else -frame.axes
         return cls(z, y, frame.pose_camera_frame.translation)
 
     @property
     def east(self) -> Array:
-        """To the right in the front view and in the view from above."""
+        """Unit vector (3,) to the right in the front view and in the view from above."""
         return np.cross(self.north, self.up)
 
     @property
     def axes(self) -> Array:
-        """East, north and up as rows (3, 3)."""
+        """Unit vectors east, north and up as rows (3, 3)."""
         return np.array([self.east, self.north, self.up])
 
     def direction(self, view: str) -> tuple[Array, Array]:
-        """Where the viewer stands, seen from the scene, and what is up on the screen: unit vectors (3,), (3,)."""
+        """Return the direction to the viewer and the one up on the screen: unit vectors (3,), (3,)."""
         up, north, east = self.up, self.north, self.east
         corner = 0.55 * east - 0.75 * north + 0.6 * up
         return {
@@ -73,7 +73,7 @@ FROM_CAMERA = Orientation.of(CAMERA_FRAME)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SceneCamera:
-    """A camera that looks at `focal` (3,) from `distance` mm.
+    """Camera that looks at `focal` (3,) from `distance` mm.
 
     `axes` (3, 3) are the rows right, up and back (towards the viewer). In parallel projection the scale is that of
     the perspective at the focal point, so switching changes no size there.
@@ -87,26 +87,26 @@ class SceneCamera:
 
     @classmethod
     def looking(cls, back: ArrayLike, up: ArrayLike, focal: ArrayLike, distance: float) -> SceneCamera:
-        """A camera in the direction `back` from `focal`, with `up` upwards on the screen."""
+        """Make a camera in the direction `back` from `focal`, with `up` upwards on the screen."""
         return cls(np.asarray(focal, dtype=np.float64), _axes(back, up), float(distance))
 
     @property
     def position(self) -> Array:
-        """Where the camera stands, (3,) in mm."""
+        """Position (3,) of the camera in mm."""
         where: Array = self.focal + self.axes[2] * self.distance
         return where
 
     @property
     def half_height(self) -> float:
-        """Half the height of the picture at the focal point, in mm."""
+        """Half height of the picture at the focal point, in mm."""
         return float(self.distance * np.tan(self.view_angle / 2))
 
     def pixels_per_mm(self, size: tuple[int, int]) -> float:
-        """Scale at the focal point in a picture of `size` (width, height)."""
+        """Compute the scale at the focal point in a picture of `size` (width, height)."""
         return float(size[1] / 2 / self.half_height)
 
     def project(self, points: ArrayLike, size: tuple[int, int]) -> tuple[Array, Array]:
-        """Screen coordinates (N, 2) in pixels and depths (N,) in mm of points (N, 3) in mm.
+        """Project points (N, 3) in mm to screen coordinates (N, 2) in px and depths (N,) in mm.
 
         A point at or behind the viewer has a depth ≤ 0 and NaN for coordinates.
         """
@@ -127,7 +127,7 @@ class SceneCamera:
         return local[:2].T, depth
 
     def orbited(self, dx: float, dy: float, up: ArrayLike) -> SceneCamera:
-        """Turned by a drag of (dx, dy) pixels: about `up`, and about the screen's horizontal up to the poles."""
+        """Turn by a drag of (dx, dy) px: about `up`, and about the screen's horizontal up to the poles."""
         pole = np.asarray(up, dtype=np.float64)
         axes = self.axes @ _rotation(pole, -np.radians(DEGREES_PER_PIXEL) * dx).T
         tilt = np.radians(DEGREES_PER_PIXEL) * dy
@@ -138,22 +138,22 @@ class SceneCamera:
         return replace(self, axes=_axes(axes[2], axes[1]))
 
     def turned(self, before: Orientation, after: Orientation) -> SceneCamera:
-        """Turned about what it looks at, so that it looks in the second orientation as it did in the first."""
+        """Turn about the focal point, so that the view in the second orientation equals that in the first."""
         return replace(self, axes=self.axes @ before.axes.T @ after.axes)
 
     def panned(self, dx: float, dy: float, size: tuple[int, int]) -> SceneCamera:
-        """Moved so that the scene follows a drag of (dx, dy) pixels."""
+        """Move so that the scene follows a drag of (dx, dy) pixels."""
         scale = self.pixels_per_mm(size)
         return replace(self, focal=self.focal - (self.axes[0] * dx - self.axes[1] * dy) / scale)
 
     def zoomed(self, factor: float, at: tuple[float, float], size: tuple[int, int]) -> SceneCamera:
-        """Nearer by `factor`; what is under the screen point `at` at the focal depth stays there."""
+        """Move nearer by `factor`; the point under the screen point `at` at the focal depth stays there."""
         dx, dy = at[0] - size[0] / 2, at[1] - size[1] / 2
         nearer = replace(self, distance=self.distance / factor)
         return nearer.panned(dx * (1 - factor), dy * (1 - factor), size)
 
     def fitted(self, points: Array, size: tuple[int, int], margin: tuple[int, int] = (0, 0)) -> SceneCamera:
-        """Moved so that `points` (N, 3) fill the picture, seen from the same direction.
+        """Move so that `points` (N, 3) fill the picture, seen from the same direction.
 
         `margin` are pixels to leave free at the right and at the lower edge, besides BORDER_PX on every side.
         """
@@ -173,7 +173,7 @@ class SceneCamera:
         return moved.panned(-margin[0] / 2, -margin[1] / 2, size)
 
     def depth_range(self, corners: Array) -> tuple[float, float]:
-        """Nearest and farthest depth in mm to draw so that `corners` (N, 3) and all between them are in it."""
+        """Compute nearest and farthest depth in mm to draw, so that `corners` (N, 3) are in between."""
         depth = self.distance - (corners - self.focal) @ self.axes[2]
         room = max(0.02 * float(depth.max() - depth.min()), 0.01 * self.distance)  # marks are drawn a little nearer
         near, far = float(depth.min()) - room, float(depth.max()) + room
@@ -200,7 +200,7 @@ def _rotation(axis: Array, angle: float) -> Array:
 
 
 def from_origin(points: Array, size: tuple[int, int], pyramid: Array | None) -> SceneCamera:
-    """The scene as the measuring camera sees it: from the origin along +z, with −y up.
+    """Make the view of the measuring camera: from the origin along +z, with −y up.
 
     `pyramid` (5, 3) are its centre and the corners of its picture, which is then shown whole; without it `points`
     (N, 3) are.

@@ -27,7 +27,7 @@ from workbench.views.scene.tools import Navigate
 
 
 class Canvas(QWidget):
-    """Shows the picture drawn last, stretched to its size until a new one comes, and gives mouse and keys to the tool.
+    """Widget with the picture drawn last, stretched until a new one comes; it passes mouse and keys to the tool.
 
     `paint` paints labels, colour bar and axes over the picture; `taken` tells how many pixels at the right the bar
     takes.
@@ -78,7 +78,7 @@ class Canvas(QWidget):
         self.update()
 
     def set_tool(self, tool: Navigate) -> None:
-        """Let the mouse do something else."""
+        """Set the tool of the mouse."""
         self.tool = tool
         self.setCursor(tool.cursor)
         self.update()
@@ -144,13 +144,13 @@ class Canvas(QWidget):
 
 
 def as_image(pixels: NDArray[np.uint8]) -> QImage:
-    """A picture from (h, w, 3)."""
+    """Convert (h, w, 3) to an image."""
     height, width = pixels.shape[:2]
     return QImage(np.ascontiguousarray(pixels).data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
 
 def as_lines(opacity: NDArray[np.uint8]) -> QImage:
-    """A picture of dark lines of this opacity (h, w), transparent elsewhere."""
+    """Make an image of dark lines of this opacity (h, w), transparent elsewhere."""
     height, width = opacity.shape
     dark = np.zeros((height, width, 4), dtype=np.uint8)
     dark[:, :, 3] = opacity
@@ -158,7 +158,7 @@ def as_lines(opacity: NDArray[np.uint8]) -> QImage:
 
 
 def as_pixels(image: QImage) -> NDArray[np.uint8]:
-    """A copy of a picture as (h, w, 3)."""
+    """Copy an image to (h, w, 3)."""
     rgb = image.convertToFormat(QImage.Format.Format_RGB888)
     rows = np.frombuffer(rgb.constBits(), dtype=np.uint8)[: rgb.bytesPerLine() * rgb.height()]
     return rows.reshape(rgb.height(), rgb.bytesPerLine())[:, : 3 * rgb.width()].reshape(rgb.height(), -1, 3).copy()

@@ -20,7 +20,7 @@ BATCH = 250_000
 
 
 def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float]) -> int | None:
-    """Which of `points` (N, 3) a click at `at` means: the nearest on the screen, unless others there hide it.
+    """Find the point of `points` (N, 3) that a click at `at` selects: the nearest on the screen, unless hidden.
 
     None when there is none within reach.
     """
@@ -44,7 +44,7 @@ def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at:
 
 
 def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], outline: Outline) -> NDArray[np.bool_]:
-    """Which of `points` (N, 3) are seen inside an outline: (N,) bool. Points behind the viewer are not."""
+    """Mask (N,) of the `points` (N, 3) that are seen inside an outline. Points behind the viewer are not."""
     inside = np.zeros(len(points), dtype=bool)
     for start in range(0, len(points), BATCH):
         screen, depth = camera.project(points[start : start + BATCH], size)
@@ -53,7 +53,7 @@ def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], out
 
 
 class Outline:
-    """A closed outline (K, 2) drawn on the screen; one that crosses itself counts by the even-odd rule."""
+    """Closed outline (K, 2) drawn on the screen; one that crosses itself counts by the even-odd rule."""
 
     def __init__(self, corners: ArrayLike) -> None:
         self._corners = np.asarray(corners, dtype=np.float64).reshape(-1, 2)
@@ -66,7 +66,7 @@ class Outline:
         cv2.polylines(self._mask, [line], isClosed=True, color=2, thickness=4, shift=4)
 
     def contains(self, spots: Array) -> NDArray[np.bool_]:
-        """Which screen coordinates (N, 2) lie inside: (N,) bool."""
+        """Mask (N,) of the screen coordinates (N, 2) inside the outline."""
         low, high = self._corners.min(axis=0), self._corners.max(axis=0)
         with np.errstate(invalid="ignore"):
             near = np.flatnonzero((spots >= low).all(axis=1) & (spots <= high).all(axis=1))

@@ -20,7 +20,7 @@ _serials = count()
 
 
 class SceneCloud:
-    """Points (N, 3) in mm with a value (N,) or a colour each; more can be added.
+    """Cloud of points (N, 3) in mm with a value (N,) or a colour each; more can be added.
 
     The points given first are dealt out to as many chunks as they fill, one after the other, so that each chunk is
     spread over the whole; added points fill further chunks in their order. `serial` tells clouds and recoloured
@@ -53,7 +53,7 @@ class SceneCloud:
 
     @property
     def points(self) -> Array:
-        """All points (N, 3) as given, in mm."""
+        """Points (N, 3) as given, in mm."""
         return self._points[: self.given]
 
     @property
@@ -63,22 +63,22 @@ class SceneCloud:
 
     @property
     def chunks(self) -> int:
-        """How many chunks there are."""
+        """Number of chunks."""
         return self._dealt + -(-(self.given - self._first) // CHUNK)
 
     def rows(self, chunk: int) -> slice:
-        """Which of the given points are in a chunk."""
+        """Return the slice of the given points in a chunk."""
         if chunk < self._dealt:
             return slice(chunk, self._first, self._dealt)
         start = self._first + (chunk - self._dealt) * CHUNK
         return slice(start, min(start + CHUNK, self.given))
 
     def size(self, chunk: int) -> int:
-        """How many points are in a chunk; only the last chunk changes, when points are added."""
+        """Return the number of points in a chunk; only the last chunk changes, when points are added."""
         return len(range(*self.rows(chunk).indices(self.given)))
 
     def chunk(self, number: int) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32] | None]:
-        """Points (n, 3) in mm, colours and normals (n, 3) of a chunk, without points that are not finite."""
+        """Return points (n, 3) in mm, colours and normals (n, 3) of a chunk, without points that are not finite."""
         rows = self.rows(number)
         points = self._points[rows].astype(np.float32)
         if self._values is not None:
@@ -92,13 +92,13 @@ class SceneCloud:
         return points[finite], colours[finite], None if normals is None else normals[finite]
 
     def spread(self, chunks: int) -> list[int]:
-        """So many chunks, evenly over all."""
+        """Choose so many chunks, evenly over all."""
         if chunks >= self.chunks:
             return list(range(self.chunks))
         return sorted({int(k) for k in np.linspace(0, self.chunks - 1, max(chunks, 1))})
 
     def sample(self, at_most: int = 20_000) -> Array:
-        """A fair sample (n, 3) of the points, the newest among them."""
+        """Return a fair sample (n, 3) of the points, the newest among them."""
         return self.points[:: -max(1, -(-self.given // at_most))]
 
     def add(self, points: ArrayLike, values: ArrayLike | None) -> None:
@@ -155,7 +155,7 @@ def _towards_camera(normals: NDArray[np.float32], points: NDArray[np.float32]) -
 
 
 def as_points(points: ArrayLike, what: str = "points") -> Array:
-    """(N, 3) float64.
+    """Convert points to (N, 3) float64.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def as_points(points: ArrayLike, what: str = "points") -> Array:
 
 
 def finite_rows(points: NDArray[np.floating]) -> NDArray[np.bool_]:
-    """Which points (N, 3) have three finite coordinates."""
+    """Mask (N,) of the points (N, 3) with three finite coordinates."""
     return np.asarray(np.isfinite(points).all(axis=1))
 
 

@@ -35,7 +35,7 @@ _STOPS = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Colouring:
-    """How a cloud or a mesh is coloured: by a number each, by given colours, or all in one.
+    """Colouring of a cloud or a mesh: by a number each, by given colours, or all in one.
 
     Name and unit stand over the colour bar; `limits` are the values at its ends, 1 % and 99 % of all values if not
     given.
@@ -52,11 +52,11 @@ class Colouring:
 
     @property
     def title(self) -> str:
-        """Name and unit, as they stand over the bar."""
+        """Name and unit, as shown over the bar."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def limited(self, values: Array) -> Colouring:
-        """With limits that are known: 1 % and 99 % of `values` if none were given."""
+        """Set the limits: 1 % and 99 % of `values` if none were given."""
         finite = values[np.isfinite(values)]
         if not len(finite):
             return replace(self, limits=self.limits or (0.0, 1.0), clipped=(False, False))
@@ -74,7 +74,7 @@ class Colouring:
         return replace(self, limits=(low, high), clipped=clipped)
 
     def of(self, values: Array) -> NDArray[np.uint8]:
-        """Colours (N, 3) of values (N,); needs limits."""
+        """Map values (N,) to colours (N, 3); needs limits."""
         assert self.limits is not None
         low, high = self.limits
         with np.errstate(invalid="ignore"):
@@ -85,7 +85,7 @@ class Colouring:
         return colours
 
     def plain(self, indices: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """Colours (N, 3) of the points of these numbers, which have no values; new points are grey."""
+        """Return colours (N, 3) of the points of these numbers, which have no values; new points are grey."""
         if self.colours is None:
             return np.tile(np.array(self.plain_colour, dtype=np.uint8), (len(indices), 1))
         colours = np.full((len(indices), 3), UNKNOWN, dtype=np.uint8)
@@ -96,7 +96,7 @@ class Colouring:
 
 @cache
 def table(colour_map: ColourMap) -> NDArray[np.uint8]:
-    """The map as 256 colours (256, 3)."""
+    """Return the map as 256 colours (256, 3)."""
     if colour_map == "classes":
         middle = len(DEVIATIONS) // 2
         steps = np.array([to_rgba(one)[:3] for one in (*DEVIATIONS[: middle + 1], *DEVIATIONS[middle:])])
@@ -111,7 +111,7 @@ def table(colour_map: ColourMap) -> NDArray[np.uint8]:
 
 
 def as_colours(colours: ArrayLike, count: int) -> NDArray[np.uint8]:
-    """One colour a point, (N, 3) uint8; numbers up to 1 as well.
+    """Convert colours to one a point, (N, 3) uint8; also from numbers up to 1.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def as_colours(colours: ArrayLike, count: int) -> NDArray[np.uint8]:
 
 
 def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]]:
-    """Round numbers from `low` to `high` and how they are written, with as many decimals as tell them apart.
+    """Choose round numbers from `low` to `high`, and their texts, with as many decimals as needed.
 
     They are two at least, even if that is more than `at_most`: one alone tells no scale.
     """
@@ -142,6 +142,6 @@ def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]
 
 
 def nice_step(at_least: float) -> float:
-    """The smallest of 1, 2, 5 times a power of ten that is not below `at_least`."""
+    """Round up to 1, 2, 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(at_least))
     return float(power * next(m for m in (1, 2, 5, 10) if m * power >= at_least * (1 - 1e-9)))

@@ -24,7 +24,7 @@ MARKS_NEARER = 0.003
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Marks:
-    """Points (N, 3) in one colour, `size` pixels wide."""
+    """Marks at points (N, 3) in one colour, `size` pixels wide."""
 
     points: Array
     colour: Rgb
@@ -68,7 +68,7 @@ class Measure:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Callout:
-    """Words about a place (3,) in mm.
+    """Callout of a place (3,) in mm.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ Item = Marks | Patches | Lines | Labels | Measure
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMesh:
-    """A triangulated surface; `serial` tells meshes apart."""
+    """Triangulated surface; `serial` tells meshes apart."""
 
     vertices: Array
     triangles: NDArray[np.int64]
@@ -108,7 +108,7 @@ class SurfaceMesh:
     serial: int = field(default_factory=count().__next__)
 
     def colours(self, vertices: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """Colours (n, 3) of some vertices."""
+        """Return the colours (n, 3) of some vertices."""
         if self.values is not None:
             return self.colouring.of(self.values[vertices])
         return self.colouring.plain(vertices)
@@ -121,19 +121,21 @@ class SurfaceMesh:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class HiddenSide:
-    """Cloud, mesh and marks are not drawn where they lie beyond a place (3,) in a direction (3,)."""
+    """Half space in which cloud, mesh and marks are hidden: beyond a place (3,) in a direction (3,)."""
 
     place: Array
     towards: Array
 
     def hides(self, points: Array) -> NDArray[np.bool_]:
-        """Which of the points (N, 3) are hidden."""
+        """Mask (N,) of the points (N, 3) that are hidden."""
         return np.asarray((points - self.place) @ self.towards > 0)
 
 
 @dataclass
 class Scene:
-    """Everything that is shown. Items are replaced, never changed: the same object is the same drawing."""
+    """Content of a view: everything that is shown. Items are replaced, never changed: the same object is the same
+    drawing.
+    """
 
     cloud: SceneCloud | None = None
     cloud_shown: bool = True
@@ -146,17 +148,17 @@ class Scene:
 
     @property
     def visible_cloud(self) -> SceneCloud | None:
-        """The cloud, if it is shown and has points."""
+        """Cloud, if it is shown and has points."""
         return self.cloud if self.cloud is not None and self.cloud_shown and self.cloud.drawable else None
 
     @property
     def visible_mesh(self) -> SurfaceMesh | None:
-        """The mesh, if it is shown."""
+        """Mesh, if it is shown."""
         return self.mesh if self.mesh_shown else None
 
     @property
     def colouring(self) -> Colouring | None:
-        """Whose colour bar is shown: the cloud's, else the mesh's; None without values."""
+        """Colouring of the bar: the cloud's, else the mesh's; None without values."""
         for coloured in (self.visible_cloud, self.visible_mesh):
             if coloured is not None and coloured.colouring.name and coloured.colouring.limits is not None:
                 return coloured.colouring
@@ -167,12 +169,12 @@ class Scene:
         self.items[type(item), name] = item
 
     def remove(self, name: str, kind: type | None = None) -> None:
-        """Take away the items of a name, of one kind or of all."""
+        """Remove the items of a name, of one kind or of all."""
         for key in [key for key in self.items if key[1] == name and kind in (None, key[0])]:
             del self.items[key]
 
     def clear(self) -> None:
-        """Take everything away; what comes next is shown."""
+        """Remove everything; later content is shown."""
         self.cloud = self.mesh = None
         self.cloud_shown = self.mesh_shown = True
         self.items = {}
@@ -195,7 +197,7 @@ class Scene:
         return self.visible_mesh is not None and self.visible_cloud is None
 
     def to_fit(self) -> Array:
-        """Points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
+        """Return the points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
         parts = []
         if self.visible_cloud is not None:
             parts.append(self.visible_cloud.sample())
@@ -210,7 +212,7 @@ class Scene:
         return points[finite_rows(points)]
 
     def box(self) -> Array:
-        """The eight corners (8, 3) of a box round everything; (0, 3) when there is nothing."""
+        """Return the eight corners (8, 3) of a box round everything; (0, 3) when there is nothing."""
         ends = [cloud.corners for cloud in [self.visible_cloud] if cloud is not None]
         ends += [mesh.corners for mesh in [self.visible_mesh] if mesh is not None]
         ends += [points for item in self.items.values() for points in _points(item) if len(points)]
@@ -236,7 +238,7 @@ def _points(item: Item) -> Iterator[Array]:
 
 
 def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> SurfaceMesh:
-    """A mesh with checked arrays and known limits; vertices that are not finite lose their triangles.
+    """Make a mesh with checked arrays and known limits; vertices that are not finite lose their triangles.
 
     Raises
     ------
@@ -260,7 +262,7 @@ def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, c
 
 
 def each(colours: Sequence[Rgb], count: int) -> tuple[Rgb, ...]:
-    """One colour for all, or one each."""
+    """Repeat one colour for all, or check that there is one each."""
     if len(colours) == 1:
         return (colours[0],) * count
     if len(colours) != count:

@@ -54,7 +54,7 @@ _log = logging.getLogger(__name__)
 
 
 class Drawing(QObject):
-    """Draws `scene` as `camera` sees it, and shows the pictures on `canvas`."""
+    """Scheduler that draws `scene` as `camera` sees it, and shows the pictures on `canvas`."""
 
     def __init__(self, scene: Scene, camera: Callable[[], SceneCamera], canvas: Canvas) -> None:
         super().__init__(canvas)
@@ -80,7 +80,7 @@ class Drawing(QObject):
             app.aboutToQuit.connect(self.finish)
 
     def moved(self) -> None:
-        """The camera moved, or the theme changed: show something very soon."""
+        """Draw very soon: the camera moved, or the theme changed."""
         self.complete = False
         self._passes = []
         self._canvas.edges = None
@@ -91,7 +91,7 @@ class Drawing(QObject):
         self._soon.start()
 
     def changed(self) -> None:
-        """The scene changed: show it soon."""
+        """Draw soon: the scene changed."""
         self.complete = False
         cost = sum(size(self._scene, part) for part in all_parts(self._scene))
         if self._passes:
@@ -102,19 +102,19 @@ class Drawing(QObject):
             self.moved()
 
     def grown(self) -> None:
-        """The cloud grew: show the new points, some time soon."""
+        """Draw the new points some time soon: the cloud grew."""
         self.complete = False
         if not self._growth.isActive():
             self._growth.start()
 
     def stop(self) -> None:
-        """Draw no more, until something moves or changes."""
+        """Stop drawing, until something moves or changes."""
         for timer in (self._soon, self._still, self._next, self._growth):
             timer.stop()
         self._passes, self._again = [], False
 
     def finish(self) -> None:
-        """Give back everything; nothing is left running."""
+        """Release everything; nothing is left running."""
         self.stop()
         self.complete = False
         self._doubt.stop()
@@ -123,7 +123,7 @@ class Drawing(QObject):
             self._surface, self.kind = None, "none"
 
     def whole_picture(self) -> NDArray[np.uint8] | None:
-        """Everything, drawn at once, however long it takes: (h, w, 3) in device pixels; None where there is no 3D."""
+        """Draw everything at once, however long it takes: (h, w, 3) in device px; None without 3D."""
         renderer = self._ready_renderer() if self._canvas.isVisible() else None
         if renderer is not None:
             self.stop()

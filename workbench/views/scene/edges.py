@@ -31,7 +31,7 @@ LINES_NEARER = MARKS_NEARER / 2
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Depths:
-    """A depth buffer (h, w), 1 where nothing is drawn, and the depths in mm at which it is 0 and 1."""
+    """Depth buffer (h, w), 1 where nothing is drawn, and the depths in mm at which it is 0 and 1."""
 
     buffer: NDArray[np.float32]
     near: float
@@ -39,7 +39,7 @@ class Depths:
 
 
 def edge_opacity(depths: Depths, camera: SceneCamera, lines_px: int = 0) -> NDArray[np.uint8]:
-    """Opacity (h, w) of the lines to be drawn over the picture.
+    """Compute the opacity (h, w) of the lines to be drawn over the picture.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ CLOSEST, FARTHEST = 0.01, 1e7
 
 
 class Navigator(QObject):
-    """The camera of one view and its motions.
+    """Camera of one view and its motions.
 
     Parameters
     ----------
@@ -55,13 +55,13 @@ class Navigator(QObject):
 
     @property
     def is_turned_by_hand(self) -> bool:
-        """Whether the user chose the view: it is not the one that a scene is first seen from."""
+        """Whether the user chose the view: it is not the first view of a scene."""
         first, _ = self.orientation.direction("iso")
         return self._touched or self._name != "iso" or not np.allclose(self.camera.axes[2], first)
 
     @property
     def is_put_back(self) -> bool:
-        """Whether the user chose a view and went back to the one that a scene is first seen from."""
+        """Whether the user chose a view and went back to the first view of a scene."""
         return self._ever_turned and not self.is_turned_by_hand
 
     def view(self, name: str) -> None:
@@ -83,7 +83,7 @@ class Navigator(QObject):
             self.fit()
 
     def fit(self) -> None:
-        """Keep the direction, show everything."""
+        """Show everything from the same direction."""
         self._touched = False
         points = self._scene.to_fit()
         self._extent = _extent(points)
@@ -118,12 +118,12 @@ class Navigator(QObject):
             self._fit_or_view()
 
     def forget(self) -> None:
-        """The scene is empty: what comes next is fitted, seen from a corner."""
+        """Reset: the scene is empty, and the next one is fitted, seen from a corner."""
         self._extent, self._touched, self._name, self.pyramid = 0.0, False, "iso", None
         self._ever_turned = False
 
     def set_frame(self, frame: ViewFrame) -> None:
-        """Another up and north; a standard view is taken again, one turned by hand turned with them."""
+        """Set up and north by a frame; a standard view is taken again, one turned by hand turns with them."""
         before, self.orientation = self.orientation, Orientation.of(frame)
         if self._touched:
             self._move(self.camera.turned(before, self.orientation))
@@ -131,7 +131,7 @@ class Navigator(QObject):
             self.view(self._name)
 
     def set_parallel(self, parallel: bool) -> None:
-        """Parallel projection or perspective."""
+        """Set parallel projection or perspective."""
         self.camera = replace(self.camera, parallel=parallel)
         self.moved.emit()
 
@@ -144,7 +144,7 @@ class Navigator(QObject):
         self._move(self.camera.panned(dx, dy, self._size()))
 
     def zoom(self, factor: float, at: QPointF | None) -> None:
-        """Nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by a factor, towards a point of the screen or its middle."""
         width, height = self._size()
         place = (at.x(), at.y()) if at is not None else (width / 2, height / 2)
         factor = float(np.clip(factor, self.camera.distance / FARTHEST, self.camera.distance / CLOSEST))

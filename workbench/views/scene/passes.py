@@ -27,14 +27,14 @@ FRESH = 3
 
 
 class Part(NamedTuple):
-    """Names a chunk of the cloud, a part of the mesh, or the coarse mesh that stands for it in motion."""
+    """Part of the scene: a chunk of the cloud, a part of the mesh, or the coarse mesh shown in motion."""
 
     kind: Literal["cloud", "mesh", "coarse"]
     number: int
 
 
 class Version(NamedTuple):
-    """Changes when a part has to be gathered again: another cloud or mesh, or more points."""
+    """Version of a part: it changes when the part has to be gathered again."""
 
     serial: int
     size: int
@@ -59,14 +59,14 @@ Made = Callable[[Part], bool]
 
 
 def all_parts(scene: Scene) -> list[Part]:
-    """Everything, the mesh before the cloud."""
+    """List all parts, the mesh before the cloud."""
     cloud, mesh = scene.visible_cloud, scene.visible_mesh
     parts = [Part("mesh", k) for k in range(-(-len(mesh.triangles) // TRIANGLES))] if mesh is not None else []
     return parts + [Part("cloud", k) for k in range(cloud.chunks if cloud is not None else 0)]
 
 
 def size(scene: Scene, part: Part) -> int:
-    """How many points or triangles a part has, which is what it costs."""
+    """Count the points or triangles of a part, which are its cost."""
     if part.kind == "cloud":
         assert scene.cloud is not None
         return scene.cloud.size(part.number)
@@ -75,7 +75,7 @@ def size(scene: Scene, part: Part) -> int:
 
 
 def version(scene: Scene, part: Part) -> Version | None:
-    """Of a part as it is in the scene now; None when it is not there any more."""
+    """Return the version of a part as it is in the scene now; None when it is gone."""
     if part.kind == "cloud":
         cloud = scene.visible_cloud
         return Version(cloud.serial, cloud.size(part.number)) if cloud and part.number < cloud.chunks else None
@@ -84,7 +84,7 @@ def version(scene: Scene, part: Part) -> Version | None:
 
 
 def quick_pass(scene: Scene, allowance: float, made: Made) -> Pass:
-    """One pass of about `allowance` points and triangles that stands for the whole scene, for the time it moves."""
+    """Make one pass of about `allowance` points and triangles that represents the whole scene while it moves."""
     parts: list[Part] = []
     left = allowance
     if (mesh := scene.visible_mesh) is not None:
@@ -100,7 +100,7 @@ def quick_pass(scene: Scene, allowance: float, made: Made) -> Pass:
 
 
 def whole_passes(scene: Scene, allowance: float, made: Made) -> list[Pass]:
-    """Passes of about `allowance` points and triangles each that draw everything, at least one."""
+    """Divide everything into passes of about `allowance` points and triangles each, at least one."""
     batches: list[list[Part]] = [[]]  # the lines are drawn with the first, alone if there is no mesh
     edges = scene.has_edges
     cost = fresh = 0
@@ -127,7 +127,7 @@ def whole_passes(scene: Scene, allowance: float, made: Made) -> list[Pass]:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Gathered:
-    """Points (n, 3) in mm with colours (n, 3); unit normals (n, 3) where they are shaded; a mesh's triangles (t, 3)."""
+    """Arrays of a part: points (n, 3) in mm, colours (n, 3), unit normals (n, 3) if shaded, triangles (t, 3)."""
 
     points: NDArray[np.float32]
     colours: NDArray[np.uint8]
@@ -136,7 +136,7 @@ class Gathered:
 
 
 def gather(scene: Scene, part: Part) -> Gathered:
-    """The arrays of a part."""
+    """Gather the arrays of a part."""
     if part.kind == "cloud":
         assert scene.cloud is not None
         return Gathered(*scene.cloud.chunk(part.number))

@@ -50,7 +50,7 @@ _log = logging.getLogger(__name__)
 
 
 class Readiness(QObject):
-    """What is known about drawing in 3D; one for the program: see `readiness`."""
+    """Knowledge about drawing in 3D; one for the program: see `readiness`."""
 
     known = Signal()
     """`kind` has become known, or has changed."""
@@ -71,7 +71,7 @@ class Readiness(QObject):
 
     @property
     def kind(self) -> Kind | None:
-        """How the scene is drawn here, its libraries imported; None while that is not known."""
+        """Kind of drawing here, its libraries imported; None while that is not known."""
         return "none" if os.environ.get(VARIABLE) == "none" else self._kind
 
     def opengl_in_windows(self) -> bool:
@@ -83,7 +83,7 @@ class Readiness(QObject):
         return self._opengl
 
     def find_out(self) -> None:
-        """Begin to find out, unless that is done or on its way."""
+        """Start to find out, unless that is done or under way."""
         if self.kind is not None or self._trial is not None or self._thread is not None:
             return
         if self.opengl_in_windows():
@@ -101,14 +101,14 @@ class Readiness(QObject):
         trial.start(program, arguments)
 
     def give_up(self, kind: Kind) -> None:
-        """Drawing was promised and does not work so: an OpenGL window is replaced by pictures, pictures by nothing."""
+        """Fall back, as this kind of drawing fails: from an OpenGL window to pictures, from pictures to nothing."""
         self._opengl = False
         self._kind = None if kind == "embedded" else "none"
         self.find_out()
         self.known.emit()
 
     def stop(self) -> None:
-        """The program ends: do not wait for a trial or an import that is under way."""
+        """Stop waiting for a trial or an import that is under way: the program ends."""
         self._stoppable.stopped = True
         if self._trial is not None:
             self._trial.blockSignals(True)
@@ -183,7 +183,7 @@ class _StoppableImport(MetaPathFinder):
 
 
 def reserve_opengl(view: QWidget) -> None:
-    """A window that gets its first OpenGL widget while it is seen is made anew and flickers: let it have one."""
+    """Give a window an OpenGL widget early: one made anew for it while it is seen would flicker."""
     if readiness().opengl_in_windows():
         from PySide6.QtOpenGLWidgets import QOpenGLWidget
 
@@ -214,7 +214,7 @@ _readiness: list[Readiness] = []
 
 
 def readiness() -> Readiness:
-    """The program's knowledge about drawing in 3D. GUI thread only."""
+    """Return the program's knowledge about drawing in 3D. GUI thread only."""
     if not _readiness:
         app = QCoreApplication.instance()
         made = Readiness(app)

@@ -49,7 +49,7 @@ the second; it looks at so many places."""
 
 
 class Renderer:
-    """Draws scenes into a render window, of a widget or off screen."""
+    """Renderer of scenes into a render window, of a widget or off screen."""
 
     def __init__(self, window: vtkRenderWindow) -> None:
         self._renderer = vtkRenderer()
@@ -73,7 +73,7 @@ class Renderer:
         """Whether a graphics card draws, which has time for ambient occlusion; None before it was found out."""
 
     def set_background(self, colour: Rgb) -> None:
-        """Colour behind the scene."""
+        """Set the colour behind the scene."""
         self._renderer.SetBackground(*(c / 255 for c in colour))
 
     def is_made(self, scene: Scene, part: Part) -> bool:
@@ -116,7 +116,7 @@ class Renderer:
         self._window.WaitForCompletion()  # or the time of a pass would show up in a later one
 
     def pixels(self) -> NDArray[np.uint8]:
-        """The picture drawn last, (h, w, 3)."""
+        """Return the picture drawn last, (h, w, 3)."""
         width, height = self._window.GetSize()
         self._window.MakeCurrent()
         data = vtkUnsignedCharArray()
@@ -125,7 +125,7 @@ class Renderer:
         return rows[::-1].copy()
 
     def depths(self) -> Depths:
-        """The depth buffer of what is drawn now."""
+        """Return the depth buffer of the present drawing."""
         width, height = self._window.GetSize()
         self._window.MakeCurrent()
         data = vtkFloatArray()
@@ -135,7 +135,7 @@ class Renderer:
         return Depths(rows[::-1].copy(), near, far)
 
     def close(self) -> None:
-        """Let go of everything while the window still lives."""
+        """Release everything while the window still exists."""
         self._renderer.RemoveAllViewProps()
         self._items, self._parts = {}, {}
         self._window.RemoveRenderer(self._renderer)
@@ -333,7 +333,7 @@ def _headlight() -> Any:
 
 
 def route_messages() -> None:
-    """Send what VTK has to say to Python's logging, not to the console: once, before anything is made."""
+    """Send VTK's messages to Python's logging, not to the console: once, before anything is made."""
     if _observed:
         return
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)

@@ -32,7 +32,7 @@ SOON_MS = 1
 
 
 class EmbeddedWidget(QtInteractor):
-    """The OpenGL widget: shows the last finished picture, and renders only when it is told to."""
+    """OpenGL widget with the last finished picture; it renders only on request."""
 
     def __init__(self, parent: QWidget, draw: Callable[[], None]) -> None:
         super().__init__(parent, auto_update=False, multi_samples=0)
@@ -45,7 +45,7 @@ class EmbeddedWidget(QtInteractor):
         self._drawn_size = self.size()
 
     def initializeGL(self) -> None:
-        """Set up; what is drawn for the first time is drawn in later rounds of the event loop, as it takes its time."""
+        """Set up; the first drawing is done in later rounds of the event loop, as it takes its time."""
         super().initializeGL()  # type: ignore[no-untyped-call]
         QTimer.singleShot(SOON_MS, self, self._own_a_picture)
 
@@ -82,7 +82,7 @@ class EmbeddedWidget(QtInteractor):
 
 
 class EmbeddedSurface:
-    """The scene in an OpenGL widget below `canvas`; `draw` is called when it must draw before it is next seen."""
+    """Scene in an OpenGL widget below `canvas`; `draw` is called when it must draw before it is next seen."""
 
     def __init__(self, canvas: QWidget, draw: Callable[[], None]) -> None:
         route_messages()
@@ -101,17 +101,17 @@ class EmbeddedSurface:
         return self.widget is not None and self.widget.started
 
     def fit(self, ground: Rgb) -> None:
-        """Take the canvas's place and its ground."""
+        """Take the canvas's place and its background."""
         if self.widget is not None:
             self.widget.ground = ground
             self.widget.setGeometry(self._canvas.geometry())
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """None: the widget shows what is drawn by itself."""
+        """Return None: the widget shows its drawing itself."""
         return None
 
     def close(self) -> None:
-        """Give back everything; the surface is not used again."""
+        """Release everything; the surface is not used again."""
         widget, self.widget = self.widget, None
         if widget is not None and shiboken6.isValid(widget):
             widget.draw = None
@@ -122,7 +122,7 @@ class EmbeddedSurface:
 
 
 class PictureSurface:
-    """The scene as pictures for the canvas, rendered off screen (EGL, GLX, Mesa)."""
+    """Scene as pictures for the canvas, rendered off screen (EGL, GLX, Mesa)."""
 
     ready = True
 
@@ -134,14 +134,14 @@ class PictureSurface:
         self.renderer = Renderer(window)
 
     def fit(self, ground: Rgb) -> None:
-        """Nothing: a picture has the size it is drawn in."""
+        """Do nothing: a picture has the size it is drawn in."""
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """What was drawn last, (h, w, 3)."""
+        """Return the picture drawn last, (h, w, 3)."""
         return self.renderer.pixels()
 
     def close(self) -> None:
-        """Give back everything; the surface is not used again."""
+        """Release everything; the surface is not used again."""
         plotter, self._plotter = self._plotter, None
         if plotter is not None:
             self.renderer.close()
@@ -149,7 +149,7 @@ class PictureSurface:
 
 
 def works() -> bool:
-    """Whether a small picture off screen comes out with the background it was given."""
+    """Whether a small picture off screen is drawn with the given background."""
     from workbench.views.scene.camera import SceneCamera
     from workbench.views.scene.contents import Scene
     from workbench.views.scene.passes import Pass

@@ -24,7 +24,7 @@ ARROWS = {Qt.Key.Key_Left: (-30, 0), Qt.Key.Key_Right: (30, 0), Qt.Key.Key_Up: (
 
 
 class ViewControl(Protocol):
-    """What a tool can do to the view."""
+    """Actions of a tool on the view."""
 
     def orbit(self, dx: float, dy: float) -> None:
         """Turn by a drag in pixels."""
@@ -33,28 +33,28 @@ class ViewControl(Protocol):
         """Move by a drag in pixels."""
 
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
-        """Nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by a factor, towards a point of the screen or its middle."""
 
     def grasp(self, at: QPointF) -> bool:
-        """Take hold of the handle or callout that is there, if one is."""
+        """Hold the handle or callout at a place; True if there is one."""
 
     def pull(self, dx: float, dy: float) -> None:
-        """Move what is held, by a drag in pixels."""
+        """Move the held object, by a drag in pixels."""
 
     def drop(self) -> None:
-        """Let go of what was pulled."""
+        """Release the held object."""
 
     def point_at(self, at: QPointF) -> None:
-        """The mouse is there, no button is down."""
+        """Show what is under the mouse, no button down."""
 
     def choose(self, at: QPointF) -> None:
-        """Choose the callout that is there, if one is."""
+        """Choose the callout at a place, if there is one."""
 
     def pick(self, at: QPointF) -> None:
         """Choose the point of the cloud under the cursor."""
 
     def take(self) -> None:
-        """Take what was chosen last."""
+        """Accept what was chosen last."""
 
     def centre_on(self, at: QPointF) -> None:
         """Turn about the point under the cursor from now on."""
@@ -67,7 +67,7 @@ class ViewControl(Protocol):
 
 
 class Navigate:
-    """Left button turns; right button, or left with Shift, moves; wheel and middle button go nearer.
+    """Tool to move the view: left button turns; right, or left with Shift, moves; wheel and middle zoom.
 
     A handle or callout that is shown is dragged with the left button.
     """
@@ -83,13 +83,13 @@ class Navigate:
         self._dragged = self._pulls = False
 
     def press(self, event: QMouseEvent) -> None:
-        """A button goes down."""
+        """Handle a button that goes down."""
         self._last = self._start = event.position()
         self._button, self._dragged = event.button(), False
         self._pulls = event.button() == Qt.MouseButton.LeftButton and self.view.grasp(event.position())
 
     def move(self, event: QMouseEvent) -> None:
-        """The mouse moves."""
+        """Handle a move of the mouse."""
         at = event.position()
         if self._last is None:
             self.view.point_at(at)
@@ -109,7 +109,7 @@ class Navigate:
             self.view.zoom(1.01 ** -step.y(), self._start)
 
     def release(self, event: QMouseEvent) -> None:
-        """A button comes up."""
+        """Handle a button that comes up."""
         clicked = self._last is not None and not self._dragged and event.button() == Qt.MouseButton.LeftButton
         self._last = None
         if self._pulls and self._dragged:
@@ -118,19 +118,19 @@ class Navigate:
             self.click(event.position())
 
     def click(self, at: QPointF) -> None:
-        """The left button was pressed without a drag."""
+        """Handle a left click without a drag."""
         self.view.choose(at)
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Turn about what is there; a callout goes back to where it was put first."""
+        """Turn about the point there; a callout goes back to its first place."""
         self.view.centre_on(event.position())
 
     def wheel(self, event: QWheelEvent) -> None:
-        """Nearer or farther, towards the cursor."""
+        """Zoom towards the cursor."""
         self.view.zoom(1.0015 ** event.angleDelta().y(), event.position())
 
     def key(self, event: QKeyEvent) -> bool:
-        """Whether a key was used."""
+        """Handle a key; True if it was used."""
         if event.key() in ARROWS:
             dx, dy = ARROWS[Qt.Key(event.key())]
             if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
@@ -144,11 +144,11 @@ class Navigate:
         return False
 
     def paint(self, painter: QPainter, colours: OverlayColours) -> None:
-        """Paint what the tool is about to do."""
+        """Paint the state of the tool."""
 
 
 class Pick(Navigate):
-    """As `Navigate`; a click chooses a point."""
+    """Tool to choose a point by a click; else as `Navigate`."""
 
     cursor = Qt.CursorShape.CrossCursor
 
@@ -166,11 +166,11 @@ class Pick(Navigate):
         return super().key(event)
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Two clicks on one point are one choice."""
+        """Do nothing: two clicks on one point are one choice."""
 
 
 class Polygon(Navigate):
-    """Each click is a corner; a double click, Enter, or a click on the first corner closes the region."""
+    """Tool to draw a region: each click is a corner; a double click, Enter, or the first corner closes it."""
 
     cursor = Qt.CursorShape.CrossCursor
 
@@ -239,7 +239,7 @@ class Polygon(Navigate):
 
 
 class Lasso(Polygon):
-    """The outline follows the mouse while the button is down."""
+    """Tool to draw a region: its outline follows the mouse while the button is down."""
 
     def __init__(self, view: ViewControl) -> None:
         super().__init__(view)
@@ -265,7 +265,7 @@ class Lasso(Polygon):
             self._finish()
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Nothing: a lasso is closed by letting go."""
+        """Do nothing: a lasso is closed by releasing the button."""
 
     def paint(self, painter: QPainter, colours: OverlayColours) -> None:
         if self._corners:

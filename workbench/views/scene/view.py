@@ -89,7 +89,7 @@ def prepare_3d() -> None:
 
 @dataclass(frozen=True, slots=True)
 class DrawingState:
-    """How the scene is drawn, for messages and tests.
+    """State of drawing the scene, for messages and tests.
 
     `kind` tells how ("none" before anything of OpenGL has been made), `points` are those in the cloud,
     `drawn_moving` the points and triangles in the last quick picture, `complete` means that everything is shown,
@@ -104,7 +104,7 @@ class DrawingState:
 
 
 class SceneView(QWidget):
-    """A 3D scene with its tool bar, colour bar, axes and scale.
+    """View of a 3D scene with its tool bar, colour bar, axes and scale.
 
     All coordinates are given and told in mm in the camera's frame, whatever frame is shown (`set_frame`). Arrays are
     kept, not copied: do not change them afterwards. Nothing of OpenGL is made before there is something to see in a
@@ -210,7 +210,7 @@ class SceneView(QWidget):
         self._changed(afresh=not keep_camera)
 
     def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:
-        """Let the cloud grow by `points` (M, 3) in mm with `values` (M,) if it has values.
+        """Add `points` (M, 3) in mm to the cloud, with `values` (M,) if it has values.
 
         Cheap: only new points are sent to the graphics card, at most ten times a second. `set_cloud` with empty
         arrays before says how the values are called and coloured.
@@ -263,7 +263,7 @@ class SceneView(QWidget):
         self._put(name, Marks(as_points(points), _rgb(colour), self._drawing.point_size + HIGHLIGHT_WIDER_PX))
 
     def remove_highlight(self, name: str) -> None:
-        """Take a highlight away; none of that name is no error."""
+        """Remove a highlight; none of that name is no error."""
         self._scene.remove(name, Marks)
         self._changed()
 
@@ -294,7 +294,7 @@ class SceneView(QWidget):
         self._put(name, Lines(tuple(given), each(_rgbs(colour), len(given)), width))
 
     def set_camera_frustum(self, corners: ArrayLike | None) -> None:
-        """Show where the camera is: (5, 3), its centre and the four corners of its picture; None takes it away.
+        """Show the camera: (5, 3), its centre and the four corners of its picture; None removes it.
 
         See `shapes.frustum`. The view "camera" then shows what the camera sees.
         """
@@ -326,7 +326,7 @@ class SceneView(QWidget):
         self._canvas.update()
 
     def callouts_seen(self) -> list[tuple[Callout, QPointF, QRectF]]:
-        """Those in sight, each with its place and its plate on the screen, in logical pixels of the canvas."""
+        """List the visible callouts, each with its place and its plate on the screen, in logical px of the canvas."""
         callouts, hidden, size = self._scene.callouts, self._scene.hidden, self._canvas.logical_size
         if not callouts:
             return []
@@ -361,12 +361,12 @@ class SceneView(QWidget):
         self._canvas.update()
 
     def remove(self, name: str) -> None:
-        """Take away planes, lines, labels, measures or highlights of that name; none is no error."""
+        """Remove planes, lines, labels, measures or highlights of that name; none is no error."""
         self._scene.remove(name)
         self._changed()
 
     def clear(self, message: str = "") -> None:
-        """Take everything away; a message stands in the empty view."""
+        """Remove everything; a message is shown in the empty view."""
         self.stop_drawing()
         self._marked = None
         self._scene.clear()
@@ -381,15 +381,15 @@ class SceneView(QWidget):
         self._navigator.view(name)
 
     def fit(self) -> None:
-        """Keep the direction, show everything."""
+        """Show everything from the same direction."""
         self._navigator.fit()
 
     def set_parallel(self, parallel: bool) -> None:
-        """Parallel projection, in which lengths can be compared, or perspective."""
+        """Set parallel projection, in which lengths can be compared, or perspective."""
         self._buttons.parallel.setChecked(parallel)
 
     def set_frame(self, frame: ViewFrame) -> None:
-        """Show the scene in a frame: standard views, turning, axes, grid and coordinates that are read out follow it.
+        """Show the scene in a frame, which standard views, turning, axes, grid and coordinates follow.
 
         In the camera's own, up is towards the camera and north is up in the camera's picture. What is given to the view
         and what it tells stays in the camera's frame.
@@ -401,37 +401,37 @@ class SceneView(QWidget):
 
     @property
     def frame(self) -> ViewFrame:
-        """The frame the scene is shown in."""
+        """Frame in which the scene is shown."""
         return self._frame
 
     def screen_positions(self, points: ArrayLike) -> Array:
-        """Where points (N, 3) are in this view: (N, 2) in logical pixels of its canvas; NaN behind the viewer."""
+        """Project points (N, 3) to this view: (N, 2) in logical px of its canvas; NaN behind the viewer."""
         return self._camera.project(as_points(points), self._canvas.logical_size)[0]
 
     # ---- choosing
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
-        """A checkable button in the view's tool bar, whose key works in the view; `symbol` names its icon."""
+        """Add a checkable button to the view's tool bar, whose key works in the view; `symbol` names its icon."""
         return self._buttons.add_tool(text, key, symbol)
 
     def start_picking(self) -> None:
-        """Every click on the cloud gives `point_picked`, and Enter `taken`, until Esc or `stop_drawing`.
+        """Emit `point_picked` at every click on the cloud, and `taken` at Enter, until Esc or `stop_drawing`.
 
         Dragging still turns the view.
         """
         self._start(Pick(self))
 
     def set_hint(self, hint: str) -> None:
-        """Write what the tool in hand does over the view, instead of its own words; one line or two."""
+        """Show what the present tool does over the view, instead of its own words; one line or two."""
         self._canvas.tool.hint = hint
         self._canvas.update()
 
     def start_polygon(self) -> None:
-        """Let the user click the corners of a region; a double click or Enter closes it, Esc cancels."""
+        """Start to click the corners of a region; a double click or Enter closes it, Esc cancels."""
         self._start(Polygon(self))
 
     def start_lasso(self) -> None:
-        """Let the user draw round a region with the button held down; Esc cancels."""
+        """Start to draw round a region with the button held down; Esc cancels."""
         self._start(Lasso(self))
 
     def stop_drawing(self) -> None:
@@ -444,7 +444,7 @@ class SceneView(QWidget):
     # ---- pictures
 
     def picture(self) -> NDArray[np.uint8]:
-        """What is shown, whole, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
+        """Return the whole view, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
         pixels = self._drawing.whole_picture()
         if pixels is None:  # nothing to see, or no 3D here
             image = QImage(*self._canvas.device_size, QImage.Format.Format_RGB32)
@@ -461,7 +461,7 @@ class SceneView(QWidget):
         return as_pixels(image)
 
     def seen_from(self) -> SeenFrom | None:
-        """The view that the user chose; None as long as the scene is seen as at first."""
+        """Return the view that the user chose; None as long as it is the first one."""
         if self._scene.empty or not self._navigator.is_turned_by_hand:
             return None
         camera, (width, height), hidden = self._camera, self._canvas.logical_size, self._scene.hidden
@@ -469,7 +469,7 @@ class SceneView(QWidget):
         return SeenFrom(camera.axes, camera.focal, camera.half_height, width / height, beyond)
 
     def is_put_back(self) -> bool:
-        """Whether the user chose a view of what is shown, and went back to that of at first."""
+        """Whether the user chose a view of what is shown, and went back to the first one."""
         return not self._scene.empty and self._navigator.is_put_back
 
     def save_picture(self, path: Path) -> None:
@@ -480,7 +480,7 @@ class SceneView(QWidget):
         atomic.write_bytes(path, bytes(buffer.data().data()))
 
     def state(self) -> DrawingState:
-        """How the scene is drawn now."""
+        """Return the state of drawing."""
         drawing, cloud = self._drawing, self._scene.cloud
         return DrawingState(
             kind=drawing.kind,
@@ -501,17 +501,17 @@ class SceneView(QWidget):
         self._navigator.pan(dx, dy)
 
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
-        """Nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by a factor, towards a point of the screen or its middle."""
         self._navigator.zoom(factor, at)
 
     def grasp(self, at: QPointF) -> bool:
-        """Take hold of the handle or the callout under the cursor; whether there is one."""
+        """Hold the handle or the callout under the cursor; True if there is one."""
         callout = None if self._handle_under(at) else self._callout_under(at)
         self._held = "" if callout is None else callout.name
         return callout is not None or self._handle_under(at)
 
     def pull(self, dx: float, dy: float) -> None:
-        """Move the callout that is held, or tell how far along its direction the handle goes to follow the mouse."""
+        """Move the held callout, or emit how far along its direction the handle goes to follow the mouse."""
         if self._held:
             self._pull_callout(dx, dy)
         elif self._handle is not None:
@@ -521,7 +521,7 @@ class SceneView(QWidget):
                 self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
 
     def drop(self) -> None:
-        """Let go of what was pulled, and tell where a callout is now."""
+        """Release the held object, and emit where a callout is now."""
         for one in self._scene.callouts:
             if self._held and one.name == self._held:
                 self.callout_moved.emit(one.name, one.moved)
@@ -533,7 +533,7 @@ class SceneView(QWidget):
         self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if held else self._canvas.tool.cursor)
 
     def choose(self, at: QPointF) -> None:
-        """Tell that the callout under the cursor was clicked."""
+        """Emit that the callout under the cursor was clicked."""
         callout = self._callout_under(at)
         if callout is not None:
             self.callout_chosen.emit(callout.name)
@@ -547,13 +547,13 @@ class SceneView(QWidget):
             self.point_picked.emit(number, self._marked)
 
     def take(self) -> None:
-        """Say that Enter was pressed; the mark of the last point goes."""
+        """Emit that Enter was pressed; the mark of the last point is removed."""
         self._marked = None
         self._canvas.update()
         self.taken.emit()
 
     def centre_on(self, at: QPointF) -> None:
-        """Turn about the point under the cursor from now on; a callout there goes back to where it was put first."""
+        """Turn about the point under the cursor from now on; a callout there goes back to its first place."""
         callout = self._callout_under(at)
         if callout is not None:
             self._move_callout(callout.name, None)
