@@ -41,7 +41,7 @@ WINDOW_PATIENCE_S = 0.2
 
 
 class Application(QApplication):
-    """Opens what the system hands over, too (a double click on macOS arrives as an event)."""
+    """Application that also opens files from the system (a double click on macOS arrives as an event)."""
 
     def __init__(self, argv: list[str]) -> None:
         super().__init__(argv)
@@ -60,7 +60,7 @@ class Application(QApplication):
 
 
 def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow:
-    """Dress the application and build its window, not yet shown.
+    """Style the application and build its window, not yet shown.
 
     The style sheet comes last: under one, Qt looks up the rules of all widgets anew each time a part is put into
     another, which takes longer than all the rest.
@@ -76,7 +76,7 @@ def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow
 
 
 def speak(app: QApplication, window: MainWindow, name: str, put: Callable[[], MainWindow]) -> None:
-    """Replace the window by one that speaks another language and shows the same step; `put` builds and shows it.
+    """Replace the window by one in another language that shows the same step; `put` builds and shows it.
 
     All texts are told when a widget is made, so it is the widgets that are made anew; project, undo, processes and
     messages are not the window's and stay.
@@ -153,7 +153,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def remove_cache_before_signals_end(app: QCoreApplication) -> None:
-    """Have what ends the program by a signal end it as ever, but for the temporary folder of saved code: it is removed.
+    """Remove the temporary folder of saved code before a signal ends the program.
 
     Python hears of a signal once it runs: a socket wakes it where Qt waits.
     """

@@ -31,7 +31,9 @@ COMPILES_S = 160.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bench:
-    """Shared by all pages. `measuring` runs the long jobs, `quick` what the eye waits for, `live` the live source."""
+    """Settings, project, notices and lanes shared by all pages. `measuring` runs the long jobs, `quick` what the
+    eye waits for, `live` the live source.
+    """
 
     model: ProjectModel
     notices: Notices
@@ -42,15 +44,15 @@ class Bench:
 
     @property
     def cannot_write(self) -> str:
-        """Why nothing can be measured into the open project, or ""."""
+        """Reason why nothing can be measured into the open project, or ""."""
         return tr("The project is read-only: go on in a copy (File, Save a copy).") if self.model.is_read_only else ""
 
     def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
-        """Run a long job, as `Lane.run` does; the status bar shows how far it is, a notice what went wrong."""
+        """Run a long job, as `Lane.run`; the status bar shows its progress, a notice its error."""
         return self._run(self.measuring, receiver, job, *args, label=label, **more)
 
     def run_quick(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
-        """Run a short job whose result is shown at once, as `Lane.run` does; a notice tells what went wrong."""
+        """Run a short job whose result is shown at once, as `Lane.run`; a notice shows its error."""
         return self._run(self.quick, receiver, job, *args, label=label, **more)
 
     def _run(
@@ -77,13 +79,13 @@ class Bench:
             lane.close()
 
     def wait_until_closed(self) -> None:
-        """Wait for ended processes to be gone: after the event loop has ended."""
+        """Wait until ended processes are gone: after the event loop has ended."""
         for lane in (self.measuring, self.quick, self.live):
             lane.wait_until_closed()
 
 
 def make_bench(settings: AppSettings | None = None) -> Bench:
-    """A bench with lanes that are started when first used."""
+    """Make a bench with lanes that are started when first used."""
     measuring = (jobs.MEASURE_SCAN,)
     return Bench(
         ProjectModel(),

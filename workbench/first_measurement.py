@@ -15,7 +15,7 @@ from workbench.step_state import State
 
 @dataclass(frozen=True, slots=True)
 class Instruction:
-    """What is to be done on the page of a step; `button` is one of the page's card, "" is the window's Next."""
+    """Instruction on the page of a step; `button` is one of the page's card, "" is the window's Next."""
 
     page: str
     button: str
@@ -23,7 +23,7 @@ class Instruction:
 
 
 class Facts(NamedTuple):
-    """What the instruction rests on."""
+    """Facts from which the instruction follows."""
 
     page: str
     """The step that is shown."""
@@ -106,7 +106,7 @@ WAIT = label("Wait a moment: the bar at the bottom says how far it is.")
 
 
 def instruction(facts: Facts) -> Instruction:
-    """What is to be done next: the first thing that is not done as the project stands."""
+    """Choose the next instruction: the first thing that is not done as the project stands."""
     begun = facts.solved or any(facts.states[step] is State.DONE for step in ("camera", "planes", "scan"))
     if facts.page == "project" and not begun and not facts.running:
         return PROJECT

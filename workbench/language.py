@@ -77,7 +77,7 @@ FONTS = {
 
 
 def choose(language: Language, parent: QObject) -> None:
-    """Have windows that are built from now on speak `language`; what is shown already stays as it is."""
+    """Set the language of windows that are built from now on; what is shown already stays as it is."""
     global _chosen, _of_qt
     _chosen = _for_the_window(language)
     if _of_qt is not None:
@@ -100,27 +100,27 @@ def _write_as(name: str) -> None:
 
 
 def chosen() -> Language:
-    """The language that was chosen, as the window says it."""
+    """Return the language of the window."""
     return _chosen
 
 
 def spoken() -> str:
-    """The name of the language that was chosen."""
+    """Return the name of the chosen language."""
     return _chosen.name
 
 
 def printed() -> str:
-    """The name of the language of reports that state none."""
+    """Return the name of the language of reports that state none."""
     return spoken() if spoken() in languages() else "en"
 
 
 def tr(english: str, /, **values: Any) -> str:
-    """Fixed words of the window, with values in their places: `tr("{n} of {m} frames", n=3, m=5)`."""
+    """Translate fixed words of the window, with values in their places: `tr("{n} of {m} frames", n=3, m=5)`."""
     return _chosen.label(english, **values)
 
 
 def text_of(message: Message | Exception | Failure | str) -> str:
-    """What core has to say or what went wrong with a job, in the window's language; anything else as it is."""
+    """Translate a message of core or an error of a job into the window's language; anything else stays as it is."""
     if isinstance(message, Failure):
         if message.kind == ENDED:
             return tr("The process that does this ended unexpectedly. What was recorded and measured before is kept.")
@@ -133,36 +133,36 @@ def text_of(message: Message | Exception | Failure | str) -> str:
 
 
 def joined(texts: Iterable[str], how: str = "") -> str:
-    """Several texts in a row, as the window's language parts them: `how` is ";" for parts that hold commas, "and"."""
+    """Join several texts in the window's language: `how` is ";" for parts that contain commas, "and"."""
     return _chosen.joined(list(texts), how)
 
 
 def sentences(*texts: str) -> str:
-    """Sentences in a row, without those that are empty: after a Chinese full stop there is no space."""
+    """Join sentences, without empty ones: after a Chinese full stop there is no space."""
     row = " ".join(filter(None, texts))
     return row.replace("。 ", "。")
 
 
 def sentence(text: str) -> str:
-    """A text as a sentence, with the full stop of the window's language."""
+    """End a text with the full stop of the window's language."""
     return _chosen(Message("input.what", "{what}.", what=capital(text)))
 
 
 def named(name: str, text: str) -> str:
-    """A text after what it is about, with the colon of the window's language."""
+    """Put a name and the colon of the window's language before a text."""
     return tr("{name}: {value}", name=name, value=text)
 
 
 def numeral(digits: str) -> str:
-    """Digits as Python writes them, with the decimal sign of the window's language and a true minus."""
+    """Convert digits as Python writes them to the decimal sign of the window's language and a true minus."""
     return _chosen.numeral(digits)
 
 
 def time_of(at: datetime, *, seconds: bool = False) -> str:
-    """Date and time of day of this place, as the window's language writes them."""
+    """Format date and local time of day in the window's language."""
     return _chosen.time(at.astimezone(), seconds=seconds)
 
 
 def number(value: float, spec: str = "") -> str:
-    """A number as the window's language writes it."""
+    """Format a number in the window's language."""
     return _chosen.number(value, spec)

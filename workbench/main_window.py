@@ -81,7 +81,7 @@ WIDE, HIGH = 1120, 620
 
 
 class MainWindow(QMainWindow):
-    """The workbench's one window."""
+    """Main window of the workbench."""
 
     language_wanted = Signal(str)
     """Nothing runs and all is saved: the window can be replaced by one that speaks this language."""
@@ -152,7 +152,7 @@ class MainWindow(QMainWindow):
 
     @property
     def current(self) -> str:
-        """The name of the step shown, or "" on the welcome page."""
+        """Name of the step shown, or "" on the welcome page."""
         return self._current
 
     def go_to(self, name: str) -> None:
@@ -173,7 +173,7 @@ class MainWindow(QMainWindow):
         self._refresh()
 
     def go(self, by: int) -> None:
-        """Back (−1) or Next (1)."""
+        """Go back (−1) or to the next step (1)."""
         names = [step.name for step in STEPS]
         if not self._current:
             return
@@ -182,20 +182,20 @@ class MainWindow(QMainWindow):
             self.go_to(names[place])
 
     def enter_operator_mode(self) -> None:
-        """From now on there are four buttons; what is being changed is saved before."""
+        """Enter the operator mode with its four buttons; changes are saved before."""
         if self.model.is_open and not self.operator_mode.on and (self.model.is_read_only or self.projects.save()):
             self.messages.hide()
             self.operator_mode.turn(True)
             self._show_mode()
 
     def leave_operator_mode(self) -> None:
-        """Back to all pages; where people have roles, for those who may change something."""
+        """Return to all pages; where people have roles, only for those who may change something."""
         if self.operator_mode.on and self.projects.may_leave_operator_mode():
             self.operator_mode.turn(False)
             self._show_mode()
 
     def presenter_action(self, name: str, page: str = "") -> None:
-        """Call what a shortcut means ("run", "accept", "live", "capture") on a page, the current one by default."""
+        """Call the action of a shortcut ("run", "accept", "live", "capture") on a page, by default the current one."""
         action = getattr(self.presenters.get(page or self._current), f"do_{name}", None)
         if action is not None:
             action()
@@ -207,13 +207,13 @@ class MainWindow(QMainWindow):
             self._task.cancel()
 
     def apply_theme(self, name: str) -> None:
-        """Dress the whole program: "light", "dark" or "system"."""
+        """Apply a theme to the whole program: "light", "dark" or "system"."""
         app = QApplication.instance()
         if isinstance(app, QApplication):
             apply_theme(app, name)
 
     def follow_system(self, *_: Any) -> None:
-        """The system has changed between light and dark."""
+        """Apply the theme anew: the system has changed between light and dark."""
         self.apply_theme(self.bench.settings.theme)
 
     def leave(self) -> bool:
@@ -223,7 +223,7 @@ class MainWindow(QMainWindow):
         return self._left
 
     def dismiss(self) -> None:
-        """Go, for another window to take this one's place: what is open stays open."""
+        """Close for another window to replace this one: the project stays open."""
         self._left = True
         self._close_pages()
         for presenter in self.presenters.values():
@@ -253,13 +253,13 @@ class MainWindow(QMainWindow):
         self._layout_of_screen.rest()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Close once `leave` has said so; it asks in the next turn, as no question may come up within this event."""
+        """Close once `leave` has agreed; it asks in the next turn, as no question may appear within this event."""
         event.setAccepted(self._left)
         if not self._left:
             QTimer.singleShot(0, self, self.leave)
 
     def focusNextPrevChild(self, next: bool) -> bool:
-        """Tab; Qt also calls it where what has the focus is greyed or hidden."""
+        """Move the focus by Tab; Qt also calls it when the widget with the focus is disabled or hidden."""
         return keep_focus(self) or super().focusNextPrevChild(next)
 
     def changeEvent(self, event: QEvent) -> None:

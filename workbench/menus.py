@@ -87,7 +87,7 @@ OPERATOR_MAY = ("next part", "cancel", "quit", "messages", "theme", "full", "man
 
 
 class MenuFacts(NamedTuple):
-    """What the entries of the menus rest on."""
+    """Facts from which the state of the menu entries follows."""
 
     page: str
     """The step whose page is shown; "" without a project."""
@@ -102,7 +102,7 @@ class MenuFacts(NamedTuple):
 
 
 def why_not(name: str, facts: MenuFacts, *, needs_project: bool = False) -> str:
-    """Why an entry, by its name, cannot be chosen now: a sentence, or "".
+    """Give the reason why an entry, by its name, cannot be chosen now: a sentence, or "".
 
     `needs_project`: also where it is none of NEED_A_PROJECT.
     """
@@ -124,7 +124,7 @@ def why_not(name: str, facts: MenuFacts, *, needs_project: bool = False) -> str:
 
 
 class Menus(QObject):
-    """The menu bar of a window, and the keys of its entries.
+    """Menu bar of a window, and the keys of its entries.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ class Menus(QObject):
         self.refresh(MenuFacts("", frozenset(), job=False))
 
     def refresh(self, facts: MenuFacts) -> None:
-        """Grey what makes no sense now; its tip says why."""
+        """Disable the entries that make no sense now, with the reason as tip."""
         needing = {entry.name for entry in self._brought if entry.needs_project}
         for name, action in self.actions.items():
             if name in UNDOING:  # greyed by the stack; hidden, its key means nothing

@@ -32,7 +32,7 @@ KEPT = 500
 
 
 class Level(StrEnum):
-    """How much a notice matters."""
+    """Gravity of a notice."""
 
     INFO = "info"
     WARNING = "warning"
@@ -41,7 +41,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """One message: a sentence, and details to copy."""
+    """Notice: a sentence, and details to copy."""
 
     level: Level
     text: str
@@ -52,7 +52,7 @@ class Notice:
 
 
 class Notices(QObject):
-    """All messages of this session, newest last."""
+    """List of all notices of this session, newest last."""
 
     added = Signal(object)
     _raised = Signal(str, str, str)
@@ -64,7 +64,7 @@ class Notices(QObject):
         self._restore: list[Callable[[], object]] = []
 
     def add(self, level: Level, text: str, details: str = "", *, job: str = "") -> None:
-        """Tell the technician; call in the GUI thread only."""
+        """Add a notice; call in the GUI thread only."""
         notice = Notice(level, text, details, job=job)
         self.all.append(notice)
         del self.all[:-KEPT]
@@ -72,23 +72,23 @@ class Notices(QObject):
         self.added.emit(notice)
 
     def info(self, text: str, details: str = "") -> None:
-        """Something that is good to know."""
+        """Add a notice of something that is good to know."""
         self.add(Level.INFO, text, details)
 
     def warning(self, text: str, details: str = "") -> None:
-        """Something to look at."""
+        """Add a notice of something to look at."""
         self.add(Level.WARNING, text, details)
 
     def error(self, text: str, details: str = "") -> None:
-        """Something that kept a job from being done."""
+        """Add a notice of something that stopped a job."""
         self.add(Level.ERROR, text, details)
 
     def failed(self, problem: Exception | Failure, job: str = "") -> None:
-        """What kept a job from being done, as it was raised."""
+        """Add a notice of the error that stopped a job, as it was raised."""
         self.add(Level.ERROR, text_of(problem), problem.details if isinstance(problem, Failure) else "", job=job)
 
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
-        """Tell an exception that was not caught, of any thread, in one notice; the program goes on."""
+        """Show an uncaught exception of any thread in one notice; the program goes on."""
         details = "".join(traceback.format_exception(kind, value, trace))
         text = tr("Something went wrong in the program; your work is kept. Details: {details}", details=kind.__name__)
         self._raised.emit(Level.ERROR, text, details)
@@ -114,7 +114,7 @@ class Notices(QObject):
         self._restore.append(restore)
 
     def release(self) -> None:
-        """Give the hooks back."""
+        """Restore the hooks that were there before."""
         while self._restore:
             self._restore.pop()()
 

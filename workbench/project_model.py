@@ -39,7 +39,7 @@ KEEP_S = 600.0
 
 
 class Access(StrEnum):
-    """How a project is opened: to change it, alone; the same, taken over from another; or only to look at it."""
+    """Access to an opened project: to change it alone; the same, taken over from another; or read only."""
 
     ALONE = "alone"
     TAKE_OVER = "take over"
@@ -47,7 +47,7 @@ class Access(StrEnum):
 
 
 class Edit(QUndoCommand):
-    """One change of the project by the user: the whole project is swapped, so nothing can be half undone.
+    """Change of the project by the user: the whole project is replaced, so nothing can be half undone.
 
     Edits with the same `merge_key` in a row become one.
 
@@ -87,7 +87,7 @@ class Edit(QUndoCommand):
 
 
 class ProjectModel(QObject):
-    """Project (what the user decided; undoable) and results (what was measured; facts, never undone)."""
+    """State of the program: project (choices of the user; undoable) and results (facts, never undone)."""
 
     opened = Signal()
     leaving = Signal()
@@ -130,12 +130,12 @@ class ProjectModel(QObject):
 
     @property
     def project(self) -> Project:
-        """The project in force."""
+        """Present project."""
         return self._file.project
 
     @property
     def results(self) -> Mapping[str, Done]:
-        """What was measured, by step."""
+        """Results by step."""
         return self._file.results
 
     @property
@@ -145,7 +145,7 @@ class ProjectModel(QObject):
 
     @property
     def states(self) -> Mapping[str, StepState]:
-        """How far each step is, by its name; worked out once for project and language, as every page asks often."""
+        """State of each step, by its name; computed once for project and language, as every page reads it often."""
         file, language = self._states_of
         if file is not self._file or language != spoken():
             self._states, self._states_of = step_states(self.project, self.results), (self._file, spoken())
@@ -163,7 +163,7 @@ class ProjectModel(QObject):
 
     @property
     def is_modified(self) -> bool:
-        """Whether project.json says something else."""
+        """Whether project.json differs."""
         return self.is_open and self._file != self._saved
 
     @property
@@ -172,7 +172,7 @@ class ProjectModel(QObject):
         return self.folder is not None and (not can_be_saved(self.folder) or self.why_read_only() is not None)
 
     def why_read_only(self) -> InputError | None:
-        """Why nothing of the open project may be changed on the disk; None where it may, as far as it can be."""
+        """Give the reason why the open project may not be changed on the disk; None where it may, as far as known."""
         if self.folder is None:
             return None
         if self._access is Access.READ_ONLY:
@@ -237,13 +237,13 @@ class ProjectModel(QObject):
             remove_autosave(folder)
 
     def close(self) -> None:
-        """Forget the project; save first if it is to be kept."""
+        """Close the project; save first if it is to be kept."""
         self._autosave.stop()
         self._save.stop()
         self._take(None, ProjectFile(new_project("")), saved=None, access=Access.READ_ONLY)
 
     def edit(self, label: str, after: Project, merge_key: str = "") -> None:
-        """Put `after` in force, undoable under the name `label`; nothing happens if it is the same.
+        """Replace the project by `after`, undoable under the name `label`; nothing happens if it is equal.
 
         Nor if whoever has signed in may not change it, which is told, or a reason is wanted and none is given.
         """
@@ -263,7 +263,7 @@ class ProjectModel(QObject):
             self.save_by_itself()  # the reason is nowhere else
 
     def sign_in(self, name: str, pin: str) -> None:
-        """From now on this person changes the project; InputError if name and PIN do not belong together.
+        """Sign a person in, who changes the project from now on; InputError if name and PIN do not match.
 
         What was done before cannot be undone by somebody who may not.
         """
@@ -271,7 +271,7 @@ class ProjectModel(QObject):
         self.undo_stack.clear()
 
     def stay_signed_in(self, person: Person | None) -> None:
-        """Keep signed in who was so in the project before, if this one knows the same person with the same PIN."""
+        """Keep the person of the last project signed in, if this one has the same person with the same PIN."""
         if person is not None and person in self.rules.people:
             self.signed_in = person
 
@@ -281,11 +281,11 @@ class ProjectModel(QObject):
         self.undo_stack.clear()
 
     def record(self, step: str, done: Done | None) -> None:
-        """A step has been measured (or its result is gone)."""
+        """Record the result of a step (or that it is gone)."""
         self.record_all({step: done})
 
     def record_all(self, done: Mapping[str, Done | None]) -> None:
-        """Several steps have been measured (or their results are gone) in one."""
+        """Record the results of several steps (or that they are gone) at once."""
         kept = {name: result for name, result in self.results.items() if name not in done}
         new = {name: result for name, result in done.items() if result is not None}
         self._file = replace(self._file, results={**kept, **new})
@@ -296,11 +296,11 @@ class ProjectModel(QObject):
         self.results_changed.emit()
 
     def recording_begins(self, who: QObject) -> None:
-        """`who` records from now on, until `recording_ends`."""
+        """Register `who` as recording, until `recording_ends`."""
         self._recording.add(who)
 
     def recording_ends(self, who: QObject) -> None:
-        """What `who` recorded is in the project."""
+        """Unregister `who`: its recording is in the project."""
         self._recording.discard(who)
         if not self._recording:
             self.recordings_over.emit()
@@ -317,12 +317,12 @@ class ProjectModel(QObject):
         self.undo_stack.setClean()
 
     def save_by_itself(self) -> None:
-        """Save without being asked to; what keeps it from being saved is told once."""
+        """Save automatically; an error is shown once."""
         if self.is_modified:
             self._tell_once(lambda: self._write(keep_s=KEEP_S))
 
     def autosave(self) -> None:
-        """Write the state beside project.json, for recovery after a crash; what was undone is not to be recovered."""
+        """Write the state beside project.json, for recovery after a crash; undone edits are not recovered."""
         self._autosave.stop()
         self._tell_once(self._write_autosave)
 

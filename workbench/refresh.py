@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, QTimer
 
 
 class Refresh(QObject):
-    """Calls `show` once in the next turn of the event loop, however often it was asked to.
+    """Scheduler that calls `show` once in the next turn of the event loop, however often it is requested.
 
     It is a child of its page or list, and is gone with it: what it was asked for is then no longer done. Any signal
     can be connected to `soon`.
@@ -29,7 +29,7 @@ class Refresh(QObject):
         self._timer.timeout.connect(self._due)
 
     def soon(self, *_: Any) -> None:
-        """Ask for a refresh."""
+        """Request a refresh."""
         self._timer.start()
 
     def at_once(self) -> None:

@@ -13,7 +13,7 @@ THEMES = ("system", "light", "dark")
 
 
 class AppSettings(QObject):
-    """The user's own settings, kept by Qt where each system keeps such things, or in `file` (for tests)."""
+    """User's own settings, stored by Qt in the usual place of each system, or in `file` (for tests)."""
 
     recent_changed = Signal()
     theme_changed = Signal(str)
@@ -32,16 +32,16 @@ class AppSettings(QObject):
         return [path for path in map(Path, paths) if (path / "project.json").exists()]
 
     def remember(self, project: Path) -> None:
-        """Put a project at the top of the recent ones."""
+        """Add a project at the top of the recent ones."""
         self._keep_recent([project, *(path for path in self.recent if path != project)])
 
     def forget(self, project: Path) -> None:
-        """Leave a project out of the recent ones; nothing happens to the project."""
+        """Remove a project from the recent ones; the project itself is not changed."""
         self._keep_recent([path for path in self.recent if path != project])
 
     @property
     def theme(self) -> str:
-        """One of THEMES."""
+        """Name of the theme, one of THEMES."""
         theme = str(self._store.value("theme", "system"))
         return theme if theme in THEMES else "system"
 
@@ -52,7 +52,7 @@ class AppSettings(QObject):
 
     @property
     def language(self) -> str:
-        """The window's language by its name; nothing: the system's."""
+        """Name of the window's language; "": the system's."""
         return str(self._store.value("language", ""))
 
     @language.setter
@@ -72,7 +72,7 @@ class AppSettings(QObject):
 
     @property
     def callouts(self) -> bool:
-        """Whether results stand at their places on the surface."""
+        """Whether results are shown at their places on the surface."""
         return self.text("callouts", "shown") == "shown"
 
     @callouts.setter
@@ -81,7 +81,7 @@ class AppSettings(QObject):
 
     @property
     def nominal_shown(self) -> bool:
-        """Whether the nominal surface lies over the part where a deviation from it is chosen."""
+        """Whether the nominal surface is shown over the part where a deviation from it is chosen."""
         return self.text("nominal", "hidden") == "shown"
 
     @nominal_shown.setter
@@ -90,7 +90,7 @@ class AppSettings(QObject):
 
     @property
     def projects_folder(self) -> Path:
-        """Where new projects are put."""
+        """Folder of new projects."""
         return Path(str(self._store.value("projects_folder", Path.home() / "Trisect projects")))
 
     @projects_folder.setter
@@ -98,15 +98,15 @@ class AppSettings(QObject):
         self._store.setValue("projects_folder", str(folder))
 
     def text(self, name: str, default: str) -> str:
-        """Any other setting, by its name."""
+        """Return any other setting, by its name."""
         return str(self._store.value(name, default))
 
     def keep_text(self, name: str, value: str) -> None:
-        """Remember a setting by its name."""
+        """Store a setting by its name."""
         self._store.setValue(name, value)
 
     def layout(self, name: str) -> QByteArray | None:
-        """A window's or splitter's saved geometry."""
+        """Return a window's or splitter's saved geometry."""
         value = self._store.value(f"layout/{name}")
         return value if isinstance(value, QByteArray) else None
 
@@ -115,12 +115,12 @@ class AppSettings(QObject):
         self._store.setValue(f"layout/{name}", state)
 
     def stage_seconds(self, job: str) -> dict[str, float]:
-        """How long each stage of the job of this name took last time; the guess for the next time."""
+        """Return the duration of each stage of this job last time, in s: the estimate for the next time."""
         stored = self._store.value(f"stages/{job}", {})
         return {str(k): float(v) for k, v in stored.items()} if isinstance(stored, dict) else {}
 
     def keep_stage_seconds(self, job: str, seconds: dict[str, float]) -> None:
-        """Remember how long the stages of a job took; of those it did without, what was known before."""
+        """Store the durations of the stages of a job; of those left out, the earlier ones stay."""
         self._store.setValue(f"stages/{job}", {**self.stage_seconds(job), **seconds})
 
     def _keep_recent(self, paths: list[Path]) -> None:
@@ -128,5 +128,5 @@ class AppSettings(QObject):
         self.recent_changed.emit()
 
     def flush(self) -> None:
-        """Write now."""
+        """Write the settings to the disk now."""
         self._store.sync()

@@ -33,7 +33,7 @@ TITLES: Mapping[str, str] = {
 
 
 class State(StrEnum):
-    """A step's place on the rail."""
+    """State of a step on the rail."""
 
     TODO = "todo"
     READY = "ready"
@@ -43,14 +43,14 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class StepState:
-    """A step's state, and the sentence that explains it (shown as the rail's tooltip and on the page)."""
+    """State of a step, and the sentence that explains it (shown as the rail's tooltip and on the page)."""
 
     state: State
     sentence: str
 
 
 def step_states(project: Project, results: Mapping[str, Done]) -> dict[str, StepState]:
-    """The state of every step, by its name in ORDER."""
+    """Derive the state of every step, by its name in ORDER."""
     states: dict[str, StepState] = {}
     for step in ORDER:
         states[step] = _project_state(project) if step == "project" else _state(step, project, results, states)

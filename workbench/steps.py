@@ -26,7 +26,7 @@ from workbench.step_state import TITLES
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of the wizard.
+    """Step of the wizard.
 
     `name` as in `workbench.step_state.ORDER`, `icon` of qtawesome, `help` one line, `manual` its page of the manual.
     """
@@ -40,7 +40,7 @@ class Step:
 
     @property
     def title(self) -> str:
-        """What it is called."""
+        """Displayed name of the step."""
         return TITLES[self.name]
 
 

@@ -21,13 +21,13 @@ FRAMED_MS = 500
 
 
 def name_of(screen: QScreen) -> str:
-    """A screen by what a layout depends on: its size in the window's own pixels, and its scale."""
+    """Name a screen by what a layout depends on: its size in the window's own pixels, and its scale."""
     size = screen.size()
     return f"{size.width()}x{size.height()} at {screen.devicePixelRatio():g}"
 
 
 def keep_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
-    """Remember where the window is, how its pages are divided and what is folded away, for the screen it is on."""
+    """Store the window's place, how its pages are divided and what is folded, for the screen it is on."""
     screen = name_of(window.screen())
     settings.keep_text(LAST_SCREEN, screen)
     settings.keep_layout(f"{screen}/window", window.saveGeometry())
@@ -42,7 +42,7 @@ def _keep_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSetting
 
 
 def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
-    """Lay the window out as it was on the screen it was on last; on the usual one where that screen is gone."""
+    """Restore the window as it was on its last screen; on the default one where that screen is gone."""
     screens = {name_of(screen): screen for screen in QGuiApplication.screens()}
     name = settings.text(LAST_SCREEN, "")
     if name not in screens:
@@ -54,7 +54,7 @@ def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: App
 
 
 def put_on_screen(window: QWidget, room: QRect) -> None:
-    """Move a window, and make it smaller where it has to be, so that all of its frame is within the room.
+    """Move a window, and shrink it where needed, so that all of its frame is within the room.
 
     What the frame takes is not known until the window system has made it: until then a title bar of TITLE_BAR pixels is
     reckoned with.
@@ -87,7 +87,7 @@ def _restore_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSett
 
 
 class LayoutOfScreen:
-    """Lays the pages out as they were on the screen that the window is moved to; the window stays where it is put."""
+    """Follower that lays the pages out as they were on the screen that the window is moved to."""
 
     def __init__(self, window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
         self._window, self._pages, self._settings = window, pages, settings
@@ -98,11 +98,11 @@ class LayoutOfScreen:
         self._framed.timeout.connect(lambda: put_on_screen(window, window.screen().availableGeometry()))
 
     def rest(self) -> None:
-        """The window is hidden: it has no frame any more."""
+        """Stop following: the window is hidden and has no frame any more."""
         self._framed.stop()
 
     def follow(self) -> None:
-        """Do so from now on; the window is shown."""
+        """Start following: the window is shown."""
         handle = self._window.windowHandle()
         if not self._screen and handle is not None:
             self._screen = name_of(self._window.screen())
@@ -117,7 +117,7 @@ class LayoutOfScreen:
 
 
 def inside(place: QRect, room: QRect) -> QRect:
-    """The place nearest to this one that is within the room: moved, and smaller where it has to be."""
+    """Move a rectangle into the room, to the nearest place, and shrink it where needed."""
     width, height = min(place.width(), room.width()), min(place.height(), room.height())
     left = min(max(place.left(), room.left()), room.left() + room.width() - width)
     top = min(max(place.top(), room.top()), room.top() + room.height() - height)

@@ -24,7 +24,7 @@ OURS, GROUP = "workbench.wings", "trisect.window_wings"
 
 @dataclass(frozen=True, slots=True)
 class MenuEntry:
-    """An entry of a menu that opens a page of a wing.
+    """Entry of a menu that opens a page of a wing.
 
     Parameters
     ----------
@@ -50,7 +50,9 @@ class MenuEntry:
 
 @dataclass(frozen=True, slots=True)
 class WindowWing:
-    """What a wing adds to the window. What it names is imported when the window is made."""
+    """Pages, menu entries and words that a wing adds to the window. What it names is imported when the window is
+    made.
+    """
 
     name: str
     entries: tuple[MenuEntry, ...] = ()
@@ -58,12 +60,12 @@ class WindowWing:
 
 @cache
 def window_wings() -> Found[WindowWing]:
-    """All wings of the window, loaded once."""
+    """Load all wings of the window, once."""
     return found_wings(WindowWing, chain(by_folders(OURS, "WINDOW_WING"), by_entry_points(GROUP)))
 
 
 def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, Callable[[], object]]:
-    """What each entry of the wings does; a notice tells of those that cannot be made."""
+    """Return the action of each entry of the wings; a notice is shown for those that fail."""
     made: dict[MenuEntry, Callable[[], object]] = {}
     unusable = list(window_wings().unusable)
     for wing, origin in window_wings().wings:

@@ -106,11 +106,11 @@ REFUSE = Job("core.errors:refuse")
 
 
 def name_of(job: Job) -> str:
-    """The name of the function, without its module."""
+    """Return the name of the function, without its module."""
     return job.rpartition(":")[2]
 
 
 def resolve(job: Job) -> Any:
-    """The function behind the name; imports its module."""
+    """Import the function of this name."""
     module, _, name = job.partition(":")
     return getattr(import_module(module), name)

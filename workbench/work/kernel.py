@@ -29,12 +29,12 @@ PAUSE_MS = 1
 
 
 class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
-    """A socket to the kernel that tells of each message in the GUI thread."""
+    """Socket to the kernel that emits each message in the GUI thread."""
 
     message_received = Signal(object)
 
     def start(self) -> None:
-        """Listen from now on."""
+        """Start listening."""
         self._more = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._more.timeout.connect(self._read)
         self._notifier = QSocketNotifier(self.socket.getsockopt(zmq.FD), QSocketNotifier.Type.Read, self)
@@ -47,7 +47,7 @@ class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
         self._more.start()  # sending may take the notice of an answer with it
 
     def stop(self) -> None:
-        """Listen no more, and close the socket."""
+        """Stop listening, and close the socket."""
         if self.socket is not None:
             self._notifier.setEnabled(False)
             self._more.stop()
@@ -58,7 +58,7 @@ class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
         return self.socket is None
 
     def flush(self, timeout: float = 1.0) -> None:
-        """Take what has come."""
+        """Handle the messages that have come."""
         self._read()
 
     def _read(self) -> None:
@@ -71,7 +71,7 @@ class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
 
 
 class Heartbeat(SuperQObject):  # type: ignore[misc]
-    """Stands where Jupyter's thread asks whether the kernel lives: the process's end is told by Qt."""
+    """Substitute for Jupyter's thread that asks whether the kernel lives: Qt reports the process's end."""
 
     kernel_died = Signal(object)
 
@@ -80,11 +80,11 @@ class Heartbeat(SuperQObject):  # type: ignore[misc]
         self._alive = False
 
     def start(self) -> None:
-        """From now on the kernel counts as alive."""
+        """Count the kernel as alive from now on."""
         self._alive = True
 
     def stop(self) -> None:
-        """The kernel is not asked for any more."""
+        """Stop: the kernel is not asked for any more."""
         self._alive = False
 
     pause = unpause = stop
@@ -95,7 +95,7 @@ class Heartbeat(SuperQObject):  # type: ignore[misc]
 
 
 class Client(QtKernelClientMixin, KernelClient):  # type: ignore[misc]
-    """What the console's widget talks to."""
+    """Client of the kernel for the console's widget."""
 
     iopub_channel_class = Type(Channel)
     shell_channel_class = Type(Channel)
@@ -104,12 +104,12 @@ class Client(QtKernelClientMixin, KernelClient):  # type: ignore[misc]
     hb_channel_class = Type(Heartbeat)
 
     def execute(self, code: str, *args: Any, **kwargs: Any) -> str:
-        """Have the kernel run `code`; what is typed while it stops another calculation is not thrown away with that."""
+        """Run `code` in the kernel; input typed while it stops another calculation is kept."""
         return str(super().execute(code, *args, **{**kwargs, "stop_on_error": False}))
 
 
 class Kernel(ChildProcess):
-    """The process, and the client that is connected to it: on this computer only, encrypted with keys of its own.
+    """Kernel process and the client connected to it: on this computer only, encrypted with keys of its own.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ class Kernel(ChildProcess):
         self.client.start_channels()
 
     def interrupt(self) -> None:
-        """Stop what it calculates."""
+        """Interrupt the calculation."""
         self._process.write(wire.INTERRUPT)
 
     def end(self) -> None:

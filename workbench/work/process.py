@@ -23,7 +23,7 @@ ENDS_WITHIN_MS = 3000
 
 
 class ChildProcess(QObject):
-    """A Python process that ends with this one: its standard input is a pipe from here, which it reads until the end.
+    """Python process that ends with this one: its standard input is a pipe from here, which it reads until the end.
 
     `gone` comes once, with why: the process could not be started, or ended by itself. After `end` it does not come.
 
@@ -50,16 +50,16 @@ class ChildProcess(QObject):
 
     @property
     def pid(self) -> int:
-        """Its number in the system; 0 if it does not run."""
+        """Number of the process in the system; 0 if it does not run."""
         return self._process.processId()
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended, or could not be started, told or not."""
+        """Whether it has ended, or could not be started, reported or not."""
         return self._process.state() == QProcess.ProcessState.NotRunning
 
     def end(self) -> None:
-        """Kill the process, wait for nothing, and tell of nothing more; this object deletes itself."""
+        """Kill the process, without waiting or reporting; this object deletes itself."""
         if self._ended:
             return
         self._ended = True
@@ -95,7 +95,7 @@ class ChildProcess(QObject):
 
 
 class WorkerProcess(ChildProcess):
-    """One process that runs jobs, from its start to its end.
+    """Process that runs jobs, from its start to its end.
 
     `received` brings the kind of each message, the number of its job, and its body, to be read with `wire.value_of` or
     `wire.forget`; it does not come after `end`.

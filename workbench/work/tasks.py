@@ -25,7 +25,7 @@ STOP_WITHIN_MS = 900
 
 
 class Task(QObject):
-    """One job on its way, and whom its answer is for.
+    """Job that is running or waiting, and the receiver of its answer.
 
     One of `done`, `failed`, `cancelled` comes at last, then `ended`. All are for the receiver: once it is deleted,
     nothing of the task is told any more, so whatever it connects is safe. The lane tells others of all tasks.
@@ -48,27 +48,30 @@ class Task(QObject):
 
     @property
     def lane(self) -> Lane:
-        """Whose task it is; not kept here: a lane that its last task kept alive would end with it, and end it again."""
+        """Lane of the task.
+
+        Not stored here: a lane that its last task kept alive would end with it, and end it again.
+        """
         return cast(Lane, self.parent())
 
     def cancel(self) -> None:
-        """Ask the job to stop; it does within a second, unless it is done by then."""
+        """Ask the job to stop; it does so within a second, unless it is done by then."""
         self.lane.cancel(self)
 
     def send(self, command: Any) -> None:
-        """Give a command to a running job that takes any."""
+        """Send a command to a running job that takes any."""
         self.lane.post(self, Kind.COMMAND, command)
 
     def shown(self) -> None:
-        """Tell a running job that the last view has been shown and the next one is welcome."""
+        """Report to a running job that the last view has been shown and the next one is welcome."""
         self.lane.post(self, Kind.SHOWN)
 
     def answers(self, receiver: QObject, job: Job) -> bool:
-        """Whether it is this job for this receiver."""
+        """Whether the task is this job for this receiver."""
         return (self._receiver, self.job) == (id(receiver), job)
 
     def conclude(self, kind: Kind, value: Any = None) -> None:
-        """The job is over: tell the answer to its receiver."""
+        """Send the answer to the receiver: the job is over."""
         self.succeeded = kind is Kind.DONE  # even if Cancel was pressed: what is on the disk now is the new result
         try:
             if self.succeeded:
@@ -85,7 +88,7 @@ class Task(QObject):
 
 
 class Lane(QObject):
-    """A process that runs one job after another; started when it is first needed, or by `prepare`."""
+    """Process that runs one job after another; started when it is first needed, or by `prepare`."""
 
     task_started = Signal(object)
     task_progressed = Signal(object, str, int, int)
@@ -114,7 +117,7 @@ class Lane(QObject):
 
     @property
     def current(self) -> Task | None:
-        """The task that is running."""
+        """Task that is running."""
         return self._current
 
     @property
@@ -124,7 +127,7 @@ class Lane(QObject):
 
     @property
     def pid(self) -> int:
-        """The process's number in the system; 0 if there is none."""
+        """Number of the process in the system; 0 if there is none."""
         return self._process.pid if self._process is not None else 0
 
     def prepare(self) -> None:
@@ -191,7 +194,7 @@ class Lane(QObject):
             self._stop_timer.start()
 
     def cancel_all(self) -> None:
-        """Stop what runs, and forget what waits."""
+        """Stop the running task, and drop the waiting ones."""
         for task, *_ in list(self._waiting):
             self.cancel(task)
         if self._current is not None:

@@ -41,7 +41,7 @@ INTERRUPT = b"i"
 
 
 class Kind(IntEnum):
-    """What a frame says; the first five go to the worker, the others come from it."""
+    """Kind of a frame; the first five go to the worker, the others come from it."""
 
     SETUP = 0
     RUN = 1
@@ -58,7 +58,7 @@ class Kind(IntEnum):
 
 
 def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None) -> bytes:
-    """The bytes of one frame; arrays beyond `LARGE_BYTES` are put into files in `folder`, if one is given.
+    """Encode one frame; arrays beyond `LARGE_BYTES` are put into files in `folder`, if one is given.
 
     Raises
     ------
@@ -85,20 +85,20 @@ def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None
 
 
 def value_of(body: bytes) -> Any:
-    """The value of a frame; its large arrays may be written to, and are freed when they are no longer held."""
+    """Decode the value of a frame; its large arrays may be written to, and are freed with their last reference."""
     stream = io.BytesIO(body)
     large = [_mapped(path) for path in pickle.load(stream)]
     return pickle.load(stream, buffers=large)
 
 
 def forget(body: bytes) -> None:
-    """Free what a frame holds that is not waited for any more."""
+    """Free the files of a frame that is not waited for any more."""
     for path in pickle.loads(body):
         Path(path).unlink(missing_ok=True)
 
 
 def read_frame(read: Callable[[int], bytes]) -> tuple[Kind, int, bytes]:
-    """The next frame of a pipe, by a function like `os.read`.
+    """Read the next frame of a pipe, by a function like `os.read`.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def read_frame(read: Callable[[int], bytes]) -> tuple[Kind, int, bytes]:
 
 
 def memory_folder() -> tempfile.TemporaryDirectory[str]:
-    """A folder for the files of large arrays, in memory where the system has such a place."""
+    """Make a folder for the files of large arrays, in memory where the system has such a place."""
     shared = Path("/dev/shm")
     place = shared if shared.is_dir() and os.access(shared, os.W_OK) else None
     _sweep(place or Path(tempfile.gettempdir()))

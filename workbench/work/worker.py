@@ -44,12 +44,12 @@ ENDED = "ProcessEnded"
 
 
 class WindowClosed(Exception):
-    """The window has ended; raised in the job, so that it ends, too, and keeps what it has recorded."""
+    """Exception that the window has ended; raised in the job, so that it ends, too, and keeps its recording."""
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """An exception that was not foreseen, as text that survives the way between processes."""
+    """Unforeseen exception, as text that survives the way between processes."""
 
     kind: str
     message: str
@@ -57,7 +57,7 @@ class Failure:
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
-        """The exception that is being handled."""
+        """Make the failure of the exception that is being handled."""
         return cls(type(error).__name__, str(error), traceback.format_exc())
 
     def __str__(self) -> str:
@@ -65,7 +65,7 @@ class Failure:
 
 
 class Channel:
-    """What a running job may do besides returning: report progress, send events, and receive commands."""
+    """Channel of a running job to the window: progress, events and commands."""
 
     def __init__(self, number: int, send: Callable[[Kind, int, Any], None]) -> None:
         self.number, self._send = number, send
@@ -75,7 +75,7 @@ class Channel:
         self._progress: tuple[str, float] = ("", 0.0)
 
     def progress(self, step: str, done: int, total: int) -> None:
-        """The job's `Progress`: raises Cancelled once the window has asked for it."""
+        """Report progress of the job: raises Cancelled once the window has asked for it."""
         self._check()
         if self.cancelled:
             raise Cancelled
@@ -86,7 +86,7 @@ class Channel:
             self._send(Kind.PROGRESS, self.number, (step, done, total))
 
     def emit(self, event: Any) -> None:
-        """Send the window something in the middle of the job."""
+        """Send an event to the window in the middle of the job."""
         self._send(Kind.EVENT, self.number, event)
 
     def offer(self, event: Any) -> None:
@@ -96,7 +96,7 @@ class Channel:
             self._send(Kind.VIEW, self.number, event)
 
     def command(self) -> Any | None:
-        """The next command of the window, or None."""
+        """Return the next command of the window, or None."""
         self._check()
         return wire.value_of(self.commands.popleft()) if self.commands else None
 
@@ -111,7 +111,7 @@ class Channel:
 
 
 class Worker:
-    """Runs the jobs that come through `reading` until it is closed."""
+    """Server of the jobs that come through `reading`, until it is closed."""
 
     def __init__(self, reading: int, writing: int, folder: Path) -> None:
         self._reading, self._writing, self._folder = reading, writing, folder
@@ -201,7 +201,7 @@ class Worker:
 
 
 def run_live_job(request: LiveRequest, channel: Channel) -> LiveEnded:
-    """Run the live loop until the window says Stop; pictures are sent only as fast as the window shows them."""
+    """Run the live loop until the window sends Stop; pictures are sent only as fast as the window shows them."""
     from core.pipeline.live.events import LiveView
     from core.pipeline.live.session import run_live
 
