@@ -56,7 +56,7 @@ class LiveCamera:
         self._number = 0
 
     @property
-    def paired(self) -> bool:
+    def show_with_findings(self) -> bool:
         """Whether the target is seen: its corners belong to the picture they were found in."""
         return self._look is not None and self._look.view is not None
 

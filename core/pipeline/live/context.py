@@ -26,7 +26,7 @@ class LiveStep(Protocol):
     """Step of a live recording: camera, planes or scan."""
 
     @property
-    def paired(self) -> bool:
+    def show_with_findings(self) -> bool:
         """Whether a frame is shown together with what was found in it, even after a later frame has come."""
 
     def begin(self) -> None:

@@ -76,7 +76,7 @@ class LivePlanes:
         self._adviser = ExposureAdviser()
 
     @property
-    def paired(self) -> bool:
+    def show_with_findings(self) -> bool:
         """Whether the target is seen: its corners and the stripes belong to the picture they were found in."""
         return self._look is not None and self._look.pose.view is not None
 

@@ -101,7 +101,7 @@ class LiveScan:
         self._features: RecordedFeatures | None = None
 
     @property
-    def paired(self) -> bool:
+    def show_with_findings(self) -> bool:
         """Whether it is scanning: a stripe drawn beside its light would look wrong."""
         return self._stage == "scanning"
 

@@ -154,7 +154,7 @@ class LiveLoop:
         self._context.rate_hz = self._rate()
         was_busy = self._context.worker.busy
         self._step.frame(frame)
-        if self._step.paired and self._context.worker.busy and not was_busy:
+        if self._step.show_with_findings and self._context.worker.busy and not was_busy:
             self._ahead = frame, self._display.reduced(frame.picture)  # it will be shown when it has been looked at
 
     def _obey(self) -> None:
@@ -187,7 +187,7 @@ class LiveLoop:
         if newest is None or not self._ready():
             return
         now = time.monotonic()
-        paired = self._step.paired
+        paired = self._step.show_with_findings
         if paired and self._context.worker.busy and now - self._held_s < PATIENCE_S and fresh is None:
             return
         frame = newest
