@@ -16,7 +16,7 @@ from workbench.language import tr
 from workbench.pages.calibration.acceptance import Acceptance
 from workbench.pages.calibration.current_picture import CurrentPicture
 from workbench.pages.calibration.history import StoredCalibrations
-from workbench.pages.calibration.stage import Facts, Stage, WhyNot, buttons_of, stage_of
+from workbench.pages.calibration.stage import Facts, Stage, WhyNot, disabled_reasons, stage_of
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.live.presenter import LivePresenter
@@ -142,12 +142,12 @@ class CalibrationPresenter(StepPresenter):
     @property
     def can_search(self) -> str:
         """Reason why the pictures cannot be searched now, or ""."""
-        return self._sentence(buttons_of(self._facts()).run)
+        return self._sentence(disabled_reasons(self._facts()).run)
 
     @property
     def can_accept(self) -> str:
         """Reason why nothing can be accepted now, or ""."""
-        return self._sentence(buttons_of(self._facts()).accept)
+        return self._sentence(disabled_reasons(self._facts()).accept)
 
     @property
     def is_working(self) -> bool:
@@ -160,7 +160,7 @@ class CalibrationPresenter(StepPresenter):
     @property
     def can_reject(self) -> str:
         """Reason why nothing can be rejected now, or ""."""
-        return self._sentence(buttons_of(self._facts()).reject)
+        return self._sentence(disabled_reasons(self._facts()).reject)
 
     def _sentence(self, why: WhyNot) -> str:
         missing = self._missing()

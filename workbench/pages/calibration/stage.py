@@ -132,7 +132,7 @@ def stage_of(facts: Facts) -> Stage:
     return Stage.EMPTY if facts.empty else Stage.FOUND
 
 
-def buttons_of(facts: Facts) -> Buttons:
+def disabled_reasons(facts: Facts) -> Buttons:
     """Derive from the facts why each button is disabled."""
     return Buttons(_run(facts), _accept(facts), _reject(facts))
 

@@ -30,7 +30,7 @@ from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough, is_recording
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
-from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
+from workbench.pages.scan.stage import Facts, Stage, WhyNot, disabled_reasons, stage_of
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
 from workbench.pages.settings import changed_options, values_of
@@ -158,7 +158,7 @@ class ScanPresenter(StepPresenter):
             WhyNot.LISTING: tr("The frames are being listed."),
             WhyNot.NO_FRAMES: self.work.no_frames or tr("Choose a folder that holds the frames of a scan."),
             WhyNot.ALL_LEFT_OUT: tr("All frames are left out; let some of them count again."),
-        }[buttons_of(self._facts()).measure]
+        }[disabled_reasons(self._facts()).measure]
 
     def changed_since(self) -> tuple[str, ...]:
         """List the inputs of the result that have changed since."""
@@ -371,7 +371,7 @@ class ScanPresenter(StepPresenter):
             WhyNot.MEASURING: tr("The scan is being measured; wait for it, or cancel it."),
             WhyNot.CHECK_LIVE: tr("Pictures of the check are being taken."),
             WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
-        }[buttons_of(self._facts()).record]
+        }[disabled_reasons(self._facts()).record]
 
     def _cannot_take(self) -> str:
         """Why no pictures of a check can be taken now, or ""."""
@@ -380,7 +380,7 @@ class ScanPresenter(StepPresenter):
             WhyNot.NOT_CALIBRATED: tr("Accept camera and laser planes first: they are what is checked."),
             WhyNot.LIVE: tr("Stop the recording first."),
             WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
-        }[buttons_of(self._facts()).take_check]
+        }[disabled_reasons(self._facts()).take_check]
 
     def _check_taken(self, ended: LiveEnded) -> None:
         """The pictures are the check's by now: check."""

@@ -103,7 +103,7 @@ def stage_of(facts: Facts) -> Stage:
     return Stage.RECORDED if facts.frames else Stage.EMPTY
 
 
-def buttons_of(facts: Facts) -> Buttons:
+def disabled_reasons(facts: Facts) -> Buttons:
     """Derive from the facts why each button is disabled."""
     cancel = WhyNot.NOTHING if facts.measuring else WhyNot.NOT_MEASURING
     return Buttons(_measure(facts), cancel, _record(facts), _take_check(facts))

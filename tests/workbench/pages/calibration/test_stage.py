@@ -9,7 +9,7 @@ from workbench.pages.calibration.stage import (
     Stage,
     WhyNot,
     WhyNotRestore,
-    buttons_of,
+    disabled_reasons,
     stage_of,
     why_not_restore,
 )
@@ -37,7 +37,7 @@ def every_state() -> Iterator[Facts]:
 def test_in_no_state_can_something_be_done_that_makes_no_sense():
     reached = set()
     for facts in every_state():
-        stage, can = stage_of(facts), buttons_of(facts)
+        stage, can = stage_of(facts), disabled_reasons(facts)
         reached.add(stage)
         if facts.live or facts.searching or facts.solving:
             assert can.run, facts
@@ -58,7 +58,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
 
 def test_in_every_state_the_next_thing_to_do_can_be_done():
     for facts in every_state():
-        stage, can = stage_of(facts), buttons_of(facts)
+        stage, can = stage_of(facts), disabled_reasons(facts)
         if facts.read_only:
             continue
         if stage in (Stage.FOUND, Stage.FAILED):
@@ -70,7 +70,7 @@ def test_in_every_state_the_next_thing_to_do_can_be_done():
 
 
 def test_a_grey_button_has_its_reason_among_those_with_a_sentence():
-    reasons = {why for facts in every_state() for why in buttons_of(facts)}
+    reasons = {why for facts in every_state() for why in disabled_reasons(facts)}
     assert reasons == set(WhyNot)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import product
 
-from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
+from workbench.pages.scan.stage import Facts, Stage, WhyNot, disabled_reasons, stage_of
 
 
 def every_state() -> Iterator[Facts]:
@@ -24,7 +24,7 @@ def every_state() -> Iterator[Facts]:
 def test_in_no_state_can_something_be_done_that_makes_no_sense():
     reached = set()
     for facts in every_state():
-        stage, can = stage_of(facts), buttons_of(facts)
+        stage, can = stage_of(facts), disabled_reasons(facts)
         reached.add(stage)
         if facts.live or facts.measuring or facts.read_only or not (facts.counting and facts.camera and facts.planes):
             assert can.measure, facts
@@ -41,7 +41,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
 
 def test_in_every_state_the_next_thing_to_do_can_be_done():
     for facts in every_state():
-        stage, can = stage_of(facts), buttons_of(facts)
+        stage, can = stage_of(facts), disabled_reasons(facts)
         ready = facts.camera and facts.planes and facts.counting and not facts.read_only
         if stage in (Stage.RECORDED, Stage.FAILED, Stage.MEASURED, Stage.OUTDATED) and ready:
             assert not can.measure, facts
@@ -55,13 +55,13 @@ def test_what_is_missing_is_told_in_the_order_in_which_it_is_done():
     nothing = Facts(*[False] * len(Facts._fields))
     told = []
     for name in ("camera", "planes", "source", "listed", "frames", "counting"):
-        told.append(buttons_of(nothing).measure)
+        told.append(disabled_reasons(nothing).measure)
         nothing = nothing._replace(**{name: True})
     assert told == [
         WhyNot.NO_CAMERA, WhyNot.NO_PLANES, WhyNot.NO_SOURCE, WhyNot.LISTING, WhyNot.NO_FRAMES, WhyNot.ALL_LEFT_OUT
     ]  # fmt: skip
-    assert not buttons_of(nothing).measure
+    assert not disabled_reasons(nothing).measure
 
 
 def test_a_grey_button_has_its_reason_among_those_with_a_sentence():
-    assert {why for facts in every_state() for why in buttons_of(facts)} == set(WhyNot)
+    assert {why for facts in every_state() for why in disabled_reasons(facts)} == set(WhyNot)
