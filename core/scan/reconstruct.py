@@ -35,7 +35,7 @@ from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
 from core.scan.single_change import Explanation, explain_by_change
-from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, still_part
+from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, largest_rigid_interval
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
@@ -264,7 +264,7 @@ def _solve(
     if read_out.shifts_mm and options.row_time_us is None:  # what another change of the rig does looks like that, too
         explanation = explain_by_change(among, of_among, camera, fan, progress)
         read_out = AT_ONCE if explanation is not None else read_out
-    part = still_part(among, of_among, camera, fan, names, progress, read_out)
+    part = largest_rigid_interval(among, of_among, camera, fan, names, progress, read_out)
     kept[kept] = part.kept
     among = crossings.select(kept)
     sweeps = locate_together(among, line[kept], camera, fan, progress, read_out)

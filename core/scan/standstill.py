@@ -193,7 +193,7 @@ def _movements(rays: Array, inverse_depths: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class StillPart:
+class RigidInterval:
     """Crossings (M,) within which nothing moved, when something moved, and whether there are sweeps enough to tell."""
 
     kept: NDArray[np.bool_]
@@ -207,7 +207,7 @@ class StillPart:
         return (note_of("scan.moved", when=between(names, self.movements), n=frames),)
 
 
-def still_part(
+def largest_rigid_interval(
     crossings: CrossingTable,
     line: Index,
     camera: Camera,
@@ -215,7 +215,7 @@ def still_part(
     names: Sequence[str],
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
-) -> StillPart:
+) -> RigidInterval:
     """Select the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
 
     `line` (M,) is the fan's line of each crossing, −1 between sweeps; `names` are the frames'.
@@ -252,7 +252,7 @@ def still_part(
         solved.sort(key=lambda one: -one[0])
         worse = len(solved) > 1 and solved[0][1] > CLEARLY_WORSE * max(solved[1][1], 1.0)
         kept = solved[int(worse)][2]
-    return StillPart(kept, tuple(movements), len(sweeping_frames(crossings)) >= 2 * SWEEPS_ASIDE)
+    return RigidInterval(kept, tuple(movements), len(sweeping_frames(crossings)) >= 2 * SWEEPS_ASIDE)
 
 
 def _sweeps(crossings: CrossingTable, rows: NDArray[np.bool_]) -> int:

@@ -17,7 +17,7 @@ from core.scan.fan_watch import FanRest
 from core.scan.features.frames import FrameFeatures
 from core.scan.first_cause import Cause, Suspect
 from core.scan.reconstruct import reconstruct
-from core.scan.standstill import StillPart
+from core.scan.standstill import RigidInterval
 from core.simulate.effects.warming import Warming
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan
@@ -196,7 +196,7 @@ def test_a_movement_has_the_same_two_frames_in_every_sentence():
     """Frames without a stripe between them tell nothing of when: crossings know it no better."""
     names, seen = [f"frame{n:02d}" for n in range(20)], Between(9, 12)
     (likely,) = note_on_causes((Cause(Suspect.MOVED, 0.9, 6, 1e-9),), ScanFacts(moved=True), (seen,), names)
-    (of_crossings,) = StillPart(np.ones(4, dtype=bool), (seen,), known=True).note(names, 10)
+    (of_crossings,) = RigidInterval(np.ones(4, dtype=bool), (seen,), known=True).note(names, 10)
     at_rest = np.arange(20) < 12
     (of_light,) = FanRest(at_rest, (seen,), 0.3, 0.1, 1.0, frames=20, stretches=9).note(names, 10)
     for note in (likely, of_crossings, of_light):
