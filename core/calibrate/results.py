@@ -229,7 +229,7 @@ class FanCalibration:
     stripes: tuple[tuple[Centreline, ...], ...] = ()
 
     @property
-    def told(self) -> tuple[Message, ...]:
+    def all_notes(self) -> tuple[Message, ...]:
         """Notes, with one on the size of its target if that is assumed."""
         unstated = self.scale_assumed is not False and self.scale_sd > 0
         size = (size_assumed("plane_target", self.scale_sd),) if unstated else ()

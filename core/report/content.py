@@ -486,5 +486,5 @@ class ReportContent:
             for one in self.inspected
             for note in one.notes
         ]
-        every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.told)
+        every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.all_notes)
         return gravest_first({str(note): note for note in every}.values())

@@ -123,7 +123,7 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
     solved = {"camera": solved_for(calibration.camera)}
     steps = (
         ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
-        ("planes", read_stored(folder, "planes", project.accepted.planes), calibration.fan.told),
+        ("planes", read_stored(folder, "planes", project.accepted.planes), calibration.fan.all_notes),
     )
     for step, about, notes in steps:
         made_at = {} if about is None else {step: about.kept_at}

@@ -78,7 +78,7 @@ def planes_step(
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
-        log.notes.extend((*calibration.told, *work.recording_set.not_read("planes")))
+        log.notes.extend((*calibration.all_notes, *work.recording_set.not_read("planes")))
         log.notes.extend(() if ridges is None else (ridges,))
         write_planes(log.path("planes"), calibration, camera)
         write_poses(log.path("poses"), planes_id(calibration.fan), poses)

@@ -230,7 +230,7 @@ def test_a_fan_from_a_bowed_target_is_right_within_its_covariance_once_the_bow_i
 def test_an_unstated_target_is_taken_for_a_print_and_the_technician_is_told():
     seen = features(poses(9, 303), Noise(), 3, points=GRID)
     unstated, true = (fit_fan(seen, CAMERA, replace(THREE, target=one)) for one in (BoardTolerance(), TRUE))
-    assert [note.code for note in unstated.told[-2:]] == ["target.flatness_assumed", "target.size_assumed"]
+    assert [note.code for note in unstated.all_notes[-2:]] == ["target.flatness_assumed", "target.size_assumed"]
     assert (true.scale_sd, true.scale_assumed, true.board.values.any()) == (0.0, False, False)
     assert np.trace(unstated.fan.covariance) > np.trace(true.fan.covariance)
     assert unstated.board.values.any()

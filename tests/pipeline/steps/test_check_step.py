@@ -313,7 +313,7 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     work = Workspace.open(unstated, work.out)
     fan = planes_step(work)
     assert (fan.scale_sd, fan.scale_assumed) == (SUSPECTED_SCALE, True)
-    assert {"target.size_assumed", "target.flatness_assumed"} <= {note.code for note in fan.told}
+    assert {"target.size_assumed", "target.flatness_assumed"} <= {note.code for note in fan.all_notes}
     scan_of(unchanged, work)
     gauge = gauge_step(work)
     (row,) = [row for row in gauge.budget if row.words.code == "inspection.cause_scale_assumed"]

@@ -163,8 +163,8 @@ UNSTATED = replace(FAN, scale_assumed=True)
 def test_a_size_that_is_known_is_not_told_to_be_assumed_whatever_was_assumed():
     flat = note_of("target.flatness_assumed", field="[plane_target] flatness_mm", mm=0.05)
     unstated = replace(UNSTATED, notes=(flat,))
-    assert [note.code for note in unstated.told] == ["target.flatness_assumed", "target.size_assumed"]
-    assert with_known_size(unstated, 3e-4).told == (flat,)
+    assert [note.code for note in unstated.all_notes] == ["target.flatness_assumed", "target.size_assumed"]
+    assert with_known_size(unstated, 3e-4).all_notes == (flat,)
 
 
 @pytest.mark.parametrize(("side_mm", "off"), [(60.0, 0.0), (61.0, -1 / 61)])

@@ -19,7 +19,7 @@ def notes(calibration: FanCalibration | None) -> str:
     """Write further notes on a calibration, a sentence a line; the poses left out are listed separately."""
     if calibration is None:
         return ""
-    shown = without_notes_on("poses", calibration.told)
+    shown = without_notes_on("poses", calibration.all_notes)
     return "\n".join(text_of(note) if note.is_sentence else sentence(text_of(note)) for note in shown)
 
 
