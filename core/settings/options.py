@@ -301,14 +301,14 @@ class Options:
         """Make the options of solving a scan; `row_time_us` is the time from one row of a picture to the next."""
         return ReconstructOptions(self.method, self.sigma_cut_mm, row_time_us)
 
-    def told(self, step: str) -> Mapping[str, Any]:
+    def run_settings(self, step: str) -> Mapping[str, Any]:
         """Make the settings of a step for run.json."""
         told: dict[str, Any] = {}
         for row in settings_of(step):
             if row.setting.in_file:
-                value = told_of(row.setting.kind, row.value(self))
+                value = run_value(row.setting.kind, row.value(self))
                 told |= {row.key: value} if row.is_one else value
-        return {**told, **excluded_told(self.excluded_in(step))}
+        return {**told, **run_exclusions(self.excluded_in(step))}
 
     def excluded_in(self, part: str) -> tuple[str, ...]:
         """List the pictures of one part (camera, planes or scan) left out by hand, in the order of their names."""
@@ -327,16 +327,16 @@ def settings_of(step: str) -> list[Row]:
     return sorted((row for row in rows(Options) if step in row.setting.steps), key=lambda row: len(row.setting.steps))
 
 
-def told_of(kind: Kind, value: Any) -> Any:
+def run_value(kind: Kind, value: Any) -> Any:
     """Convert a value for run.json: an object as a table, names in order, "automatic" for what is chosen."""
     if isinstance(kind, Values):
         if value is None:
             return "automatic"
-        return {name: told_of(within.kind, getattr(value, name)) for name, within in kind.settings.items()}
+        return {name: run_value(within.kind, getattr(value, name)) for name, within in kind.settings.items()}
     return sorted(value) if isinstance(kind, Names) else value
 
 
-def excluded_told(names: Collection[str]) -> Mapping[str, Any]:
+def run_exclusions(names: Collection[str]) -> Mapping[str, Any]:
     """Make the entry of run.json on what is left out by hand; nothing if nothing is."""
     return {"excluded": tuple(sorted(names))} if names else {}
 

@@ -77,7 +77,7 @@ except InputError as error:
 key = "scan settings"
 print(json.dumps({
     "shown": values_of("scan", changed)["reach_mm"], "help": form.help_of("reach_mm"), "read": read, "refused": refused,
-    "told": changed.told("scan")["reach_mm"], "flag": "--reach" in trisect("scan", "--help").out,
+    "told": changed.run_settings("scan")["reach_mm"], "flag": "--reach" in trisect("scan", "--help").out,
     "elsewhere": "--reach" in trisect("camera", "--help").out,
     "typed": trisect("scan", "nothing", "--out", "o", "--reach", 1000).err,
     "as before": inputs_of("scan", usual, {})[key], "stale": inputs_of("scan", project, {})[key],

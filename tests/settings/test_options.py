@@ -3,22 +3,22 @@ import pytest
 from core.calibrate.camera.options import CameraOptions
 from core.errors import InputError
 from core.files.recording.rig import default_rig
-from core.pipeline.steps.planes_step import planes_told
+from core.pipeline.steps.planes_step import plane_run_settings
 from core.settings.options import Options
 
 
 def test_usual_options_say_in_run_json_what_they_always_said():
-    assert Options().for_camera.told("camera") == {"skew": None, "k3": None, "fixed": [], "outliers": "gross"}
-    assert Options().for_scan.told("scan") == {"method": "network", "sigma_cut_mm": 0.05, "stripe": "automatic"}
+    assert Options().for_camera.run_settings("camera") == {"skew": None, "k3": None, "fixed": [], "outliers": "gross"}
+    assert Options().for_scan.run_settings("scan") == {"method": "network", "sigma_cut_mm": 0.05, "stripe": "automatic"}
 
 
 def test_what_is_left_out_is_recorded_with_its_own_step():
     names = {"scan/b.png", "scan/a.png", "camera/v.png", "planes/p"}
     options = Options(camera=CameraOptions(k3=True), excluded=frozenset(names))
-    assert options.for_camera.told("camera")["excluded"] == ("camera/v.png",)
-    assert options.for_scan.told("scan")["excluded"] == ("scan/a.png", "scan/b.png")
-    assert planes_told(default_rig(), options.for_planes)["excluded"] == ("planes/p",)
-    assert "excluded" not in planes_told(default_rig(), Options().for_planes)
+    assert options.for_camera.run_settings("camera")["excluded"] == ("camera/v.png",)
+    assert options.for_scan.run_settings("scan")["excluded"] == ("scan/a.png", "scan/b.png")
+    assert plane_run_settings(default_rig(), options.for_planes)["excluded"] == ("planes/p",)
+    assert "excluded" not in plane_run_settings(default_rig(), Options().for_planes)
 
 
 def test_options_can_be_compared():

@@ -21,7 +21,7 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_told, solve_planes, when_taken
+from core.pipeline.steps.planes_step import check_agreement, measure_poses, plane_run_settings, solve_planes, when_taken
 from core.progress import Progress, silent
 from core.second_process import SecondProcess
 
@@ -73,7 +73,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     recording_set = project_set(folder, project)
     names = {view.name for view in calibration.views}
     inputs = _hashes(recording_set, (path for path in recording_set.camera if recording_set.name_of(path) in names))
-    return keep_camera(folder, calibration, project.options.for_camera.told("camera"), inputs)
+    return keep_camera(folder, calibration, project.options.for_camera.run_settings("camera"), inputs)
 
 
 def find_poses(
@@ -142,7 +142,7 @@ def accept_planes(
     recording_set = project_set(folder, project)
     names = {pose.name for pose in poses}
     pictures = recording_set.pictures_of(pair for pair in recording_set.planes if pair.name in names)
-    settings = planes_told(project.rig, project.options.for_planes)
+    settings = plane_run_settings(project.rig, project.options.for_planes)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True
     return keep_planes(

@@ -39,7 +39,7 @@ def recall_camera(project_folder: Path, project: Project, progress: Progress = s
         hashes[f"camera/{path.name}"] = file_hash(path)
     if hashes != about.inputs or not _shows(calibration, project.rig.camera_target):
         return RecalledCamera(calibration, None, False)
-    same = _plain(about.settings) == _plain(project.options.for_camera.told("camera"))
+    same = _plain(about.settings) == _plain(project.options.for_camera.run_settings("camera"))
     return RecalledCamera(calibration, seen_again(calibration, project.sources.camera), same)
 
 

@@ -178,7 +178,7 @@ def _settled(results: Path, picture: Path, name: str, project: Project) -> Settl
         told = record.settings.get("scan", {}).get("stripe")
         return (
             _read_settled(_Version.of(scan))
-            if same and told == project.options.for_scan.told("scan")["stripe"]
+            if same and told == project.options.for_scan.run_settings("scan")["stripe"]
             else None
         )
     except (InputError, OSError):

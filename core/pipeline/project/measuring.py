@@ -112,7 +112,7 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
         settings, calibration = before.record().settings.get("scan"), before.calibration().id
     except InputError:
         return None
-    now = json.loads(to_json(dict(project.options.for_scan.told("scan"))))
+    now = json.loads(to_json(dict(project.options.for_scan.run_settings("scan"))))
     same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.planes}"
     return None if same else before.path("scan")
 

@@ -52,7 +52,7 @@ def camera_step(work: Workspace, settings: Options | None = None, progress: Prog
     """
     settings = settings or Options()
     with work.step("camera") as log:
-        log.settings.update(settings.told("camera"))
+        log.settings.update(settings.run_settings("camera"))
         calibration = solve_camera(
             see_views(log.pictures, progress), settings, progress, work.recording_set.rig.camera_board
         )

@@ -37,7 +37,7 @@ from core.pipeline.steps.target_sizes import with_compared_sizes
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.second_process import SecondProcess, shared_map
-from core.settings.options import STRIPE, Options, excluded_told, told_of
+from core.settings.options import STRIPE, Options, run_exclusions, run_value
 from core.stage_times import stage
 
 FOLDER = "planes/"
@@ -65,7 +65,7 @@ def planes_step(
     given = read_camera(work.path("camera"))
     camera = given.camera
     with work.step("planes") as log:
-        log.settings.update(planes_told(work.recording_set.rig, settings))
+        log.settings.update(plane_run_settings(work.recording_set.rig, settings))
         log.settings.update(log.pictures.laser_channel("planes").settings)
         poses = measure_poses(log.pictures, camera, progress, settings.plane_stripe, beside)
         ridges = write_ridges(work, log.pictures, poses, camera, settings.plane_stripe)
@@ -261,13 +261,13 @@ def fan_options(rig: Rig, settings: Options) -> FanOptions:
     return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
-def planes_told(rig: Rig, settings: Options) -> dict[str, object]:
+def plane_run_settings(rig: Rig, settings: Options) -> dict[str, object]:
     """Make the settings of the fan's calibration for run.json."""
     fan = fan_options(rig, settings)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}
     if settings.plane_stripe is not None:
-        told["stripe"] = told_of(STRIPE, settings.plane_stripe)
+        told["stripe"] = run_value(STRIPE, settings.plane_stripe)
     if settings.adjust_camera:
         told["camera"] = "adjusted"
-    return {**told, **excluded_told(settings.excluded)}
+    return {**told, **run_exclusions(settings.excluded)}

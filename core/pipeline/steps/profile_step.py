@@ -95,7 +95,7 @@ def profile_step(
     part = found.rig.part
     with work.step("profile") as log:
         channel = log.pictures.laser_channel("scan")
-        log.settings.update({**settings.told("scan"), **channel.settings, **_tilt_settings(tilt)})
+        log.settings.update({**settings.run_settings("scan"), **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
         check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
         logged = found.log("scan")

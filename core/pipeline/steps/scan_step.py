@@ -62,7 +62,7 @@ def scan_step(
     calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
-        log.settings.update({**settings.told("scan"), **log.pictures.laser_channel("scan").settings})
+        log.settings.update({**settings.run_settings("scan"), **log.pictures.laser_channel("scan").settings})
         solved = solved_scan(features, calibration, settings.solving(recording_set.rig.row_time_us), progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (

@@ -44,7 +44,7 @@ def turned(tmp_path_factory):
 def opened(made, folder):
     """A project on that set with its calibrations accepted."""
     known = read_calibration(made / "out")
-    camera = keep_camera(folder, known.camera, Options().told("camera"))
+    camera = keep_camera(folder, known.camera, Options().run_settings("camera"))
     fan = keep_planes(folder, known.fan, known.camera.camera, ())
     project = project_from_set(made / "set", "Block")
     return replace(project, accepted=Accepted(camera, fan))
