@@ -56,7 +56,7 @@ class KeptSettings:
 
 
 def _plain(settings: SourceSettings) -> dict[str, Any]:
-    return {name: asdict(value) if isinstance(value, Region) else value for name, value in settings.told.items()}
+    return {name: asdict(value) if isinstance(value, Region) else value for name, value in settings.stated.items()}
 
 
 def _settings(told: dict[str, Any]) -> SourceSettings:

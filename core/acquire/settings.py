@@ -130,7 +130,7 @@ class SourceSettings:
                 )
 
     @property
-    def told(self) -> dict[str, Any]:
+    def stated(self) -> dict[str, Any]:
         """Settings that are not None, by name."""
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
         return {name: value for name, value in pairs if value is not None}
@@ -142,11 +142,11 @@ class SourceSettings:
 
     def only(self, names: Sequence[str]) -> SourceSettings:
         """Select the settings with one of these names."""
-        return SourceSettings(**{name: value for name, value in self.told.items() if name in names})
+        return SourceSettings(**{name: value for name, value in self.stated.items() if name in names})
 
     def updated(self, newer: SourceSettings) -> SourceSettings:
         """Replace settings by those that `newer` has."""
-        return replace(self, **newer.told)
+        return replace(self, **newer.stated)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +188,7 @@ class Capabilities:
 
     def check(self, settings: SourceSettings, where: str) -> None:
         """Raise InputError with one sentence unless a source called `where` can take all of `settings`."""
-        for name, value in settings.told.items():
+        for name, value in settings.stated.items():
             if name not in self.names:
                 raise no_such_setting(name, where)
             match name:

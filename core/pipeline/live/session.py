@@ -109,7 +109,7 @@ class LiveLoop:
         context = self._context
         context.capabilities = self._source.capabilities
         told = context.settings.only(context.capabilities.names)
-        if left := [TITLES[name][0] for name in context.settings.told if name not in told.told]:
+        if left := [TITLES[name][0] for name in context.settings.stated if name not in told.stated]:
             context.notice(
                 Message(
                     "live.settings_not_there", "{source} has no {settings:and} to set: what it has is used.",
