@@ -34,14 +34,14 @@ class InputError(Exception):
         self.what = what if isinstance(what, Message) else plain(what)
         self.where = where if isinstance(where, Message) else str(where)
         self.todo = todo if isinstance(todo, Message) else plain(todo)
-        super().__init__(self.told())
+        super().__init__(self.text_in())
 
     @property
     def code(self) -> str:
         """Code of the error for programs."""
         return self.what.code
 
-    def told(self, language: Language = ENGLISH) -> str:
+    def text_in(self, language: Language = ENGLISH) -> str:
         """Return the sentence in a reader's language."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         parts = (where, self.what, self.todo)

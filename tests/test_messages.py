@@ -142,7 +142,7 @@ def test_messages_and_errors_travel_between_processes():
     error = InputError(message, where=Path("rig.toml"), todo=bow())
     back = pickle.loads(pickle.dumps(error))
     assert (str(back), back.code, back.what) == (str(error), "camera.left_out", message)
-    assert error.told(GERMAN) == "rig.toml: 2 Ansichten fehlen; Wölbung −0,40 mm."
+    assert error.text_in(GERMAN) == "rig.toml: 2 Ansichten fehlen; Wölbung −0,40 mm."
 
 
 def test_a_message_cannot_be_changed():

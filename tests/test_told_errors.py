@@ -56,7 +56,7 @@ def refused(english):
     with pytest.raises(InputError) as error:
         yield
     assert english in str(error.value)
-    assert strange(english) in error.value.told(language(PSEUDO))
+    assert strange(english) in error.value.text_in(language(PSEUDO))
 
 
 @pytest.fixture
@@ -108,7 +108,7 @@ def test_a_study_file_of_which_no_study_can_be_made(tmp_path):
 def test_a_target_that_cannot_be():
     with pytest.raises(InputError) as error:
         target_of_words("checkerboard", 2, 2, 10.0, None, "", asymmetric=False)
-    assert strange("inner corners") in error.value.told(language(PSEUDO))
+    assert strange("inner corners") in error.value.text_in(language(PSEUDO))
 
 
 def test_a_camera_of_another_program_that_cannot_be(tmp_path):
@@ -120,7 +120,7 @@ def test_a_value_that_a_data_type_within_a_file_refuses(tmp_path):
     with pytest.raises(InputError) as error:
         checked(File, {"stripe": {"width_px": -1, "contrast": 60}}, tmp_path)
     assert "stripe: width_px is −1.0, not a positive number" in str(error.value)
-    assert "Value error" not in error.value.told(language(PSEUDO))
+    assert "Value error" not in error.value.text_in(language(PSEUDO))
 
 
 def test_a_refused_value_is_an_ordinary_error_of_pythons_too():
@@ -133,7 +133,7 @@ def test_a_refused_value_is_an_ordinary_error_of_pythons_too():
 
 def test_a_sentence_has_the_signs_of_the_readers_language():
     error = InputError(Message("file.missing", "the file is missing"), where="rig.toml", todo="x")
-    assert error.told() == "rig.toml: the file is missing; x."
-    assert error.told(language("zh_CN")) == "rig.toml：缺少该文件；x。"
+    assert error.text_in() == "rig.toml: the file is missing; x."
+    assert error.text_in(language("zh_CN")) == "rig.toml：缺少该文件；x。"
     how = Message("advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET"))
     assert language("zh_CN")(how) == "先测量该扫描：trisect scan SET"

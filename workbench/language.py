@@ -126,7 +126,7 @@ def text_of(message: Message | Exception | Failure | str) -> str:
             return tr("The process that does this ended unexpectedly. What was recorded and measured before is kept.")
         return tr("Something went wrong in the program; your work is kept. Details: {details}", details=str(message))
     if isinstance(message, InputError):
-        return message.told(_chosen)
+        return message.text_in(_chosen)
     if isinstance(message, WrongValue):
         return _chosen(message.what)
     return _chosen(message) if isinstance(message, Message) else str(message)

@@ -120,7 +120,7 @@ def tr(english: str, /, **values: Any) -> str:
 def told(said: Message | InputError | str) -> str:
     """Translate a message or error of core, or known fixed words; anything else stays as it is."""
     if isinstance(said, InputError):
-        return said.told(_spoken)
+        return said.text_in(_spoken)
     return _spoken(said) if isinstance(said, Message) else _spoken.label(str(said))
 
 

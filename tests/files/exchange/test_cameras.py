@@ -186,7 +186,7 @@ def test_a_hostile_calibration_is_refused_in_one_sentence(tmp_path, name, text, 
     (tmp_path / name).write_text(text)
     with pytest.raises(InputError, match=complaint) as refused:
         read_opencv(tmp_path / name)
-    assert len(refused.value.told().removeprefix(str(tmp_path))) < 300
+    assert len(refused.value.text_in().removeprefix(str(tmp_path))) < 300
 
 
 def test_a_camera_of_another_program_leaves_its_share_out_of_u_as_its_note_says(tmp_path, calibration):
