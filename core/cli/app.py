@@ -155,7 +155,7 @@ def _say_unusable(unusable: Sequence[Brought]) -> None:
         from core.findings.brought import note_on_unusable
 
         for one in unusable:
-            talk.say(language.told(note_on_unusable(one)))
+            talk.say(language.text_of(note_on_unusable(one)))
 
 
 def _fault(words: Sequence[str], error: Exception) -> InputError:
@@ -180,4 +180,4 @@ def _refuse(error: InputError, *, as_json: bool) -> None:
             "todo": as_json_message(error.todo),
         }
         sys.stdout.write(to_json(told))
-    talk.say_aloud(f"trisect: {language.told(error)}")
+    talk.say_aloud(f"trisect: {language.text_of(error)}")

@@ -15,7 +15,7 @@ from rich.progress_bar import ProgressBar
 from rich.text import Text
 
 from core.cli.interrupts import interruptible
-from core.cli.language import told, tr
+from core.cli.language import text_of, tr
 from core.cli.talk import is_quiet, is_verbose, say
 from core.progress import Progress
 from core.remaining import USUAL_S, Remaining, in_words
@@ -65,7 +65,7 @@ def _lines(long_s: float, *, begun: bool = True, of: str = "") -> Iterator[Progr
     def end() -> None:
         took = time.monotonic() - since
         if stage and (is_verbose() or took >= long_s):
-            said = f"{of}, {told(stage)}" if of else told(stage)
+            said = f"{of}, {text_of(stage)}" if of else text_of(stage)
             say(tr("{stage}: {seconds:.1f} s", stage=said, seconds=took))
 
     def show(step: str, done: int, total: int) -> None:
@@ -75,7 +75,7 @@ def _lines(long_s: float, *, begun: bool = True, of: str = "") -> Iterator[Progr
         end()
         stage, since = step, time.monotonic()
         if begun:
-            say(tr("{stage} …", stage=told(stage)))
+            say(tr("{stage} …", stage=text_of(stage)))
 
     yield show
     end()
@@ -101,7 +101,7 @@ def _drawn(job: str) -> Iterator[Progress]:
             with telling:
                 remaining.tell(step, done, total)
             tell(step, done, total)
-            said = told(step)
+            said = text_of(step)
             drawn.update(shown, description=said, refresh=said != drawn.tasks[0].description)
 
         yield show

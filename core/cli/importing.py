@@ -10,7 +10,7 @@ from rich.table import Table
 
 from core.cli import output
 from core.cli.bar import bar
-from core.cli.language import spoken, told, tr
+from core.cli.language import spoken, text_of, tr
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
 from core.files.recording.recording_set import CHECK
@@ -41,7 +41,7 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
         _print_pictures(plan.pictures)
     rows = [(part, _part_in_words(plan, part)) for part in plan.parts]
     if imported is not None:
-        ways = spoken().joined([tr("{n} as {way}", n=n, way=told(way)) for way, n in imported.ways.items()])
+        ways = spoken().joined([tr("{n} as {way}", n=n, way=text_of(way)) for way, n in imported.ways.items()])
         rows += [(tr("files"), ways), (tr("written"), f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
     output.print_rows(rows, notes if imported is not None else (*notes, _NOTHING_WRITTEN))
 
@@ -53,7 +53,7 @@ def _print_pictures(pictures: Sequence[ImportedPicture]) -> None:
     columns = [name for name in _COLUMNS if name not in _empty_columns(pictures)]
     table = Table(box=None, padding=(0, 2, 0, 0))
     for name in columns:
-        table.add_column(told(name), overflow="fold")
+        table.add_column(text_of(name), overflow="fold")
     for one in pictures:
         values = dict(zip(_COLUMNS, _row(one), strict=True))
         table.add_row(*(visible(values[name]) for name in columns))

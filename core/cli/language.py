@@ -117,7 +117,7 @@ def tr(english: str, /, **values: Any) -> str:
     return _spoken.label(english, **values)
 
 
-def told(said: Message | InputError | str) -> str:
+def text_of(said: Message | InputError | str) -> str:
     """Translate a message or error of core, or known fixed words; anything else stays as it is."""
     if isinstance(said, InputError):
         return said.text_in(_spoken)

@@ -15,7 +15,7 @@ from rich.table import Table
 from core.acquire.channel import Channel
 from core.cli import output, talk
 from core.cli.bar import lines_of, tells_lines
-from core.cli.language import speak_as, spoken, told, tr
+from core.cli.language import speak_as, spoken, text_of, tr
 from core.cli.options import ExitCode
 from core.code_cache import note_on_cache
 from core.compiled import FOLDER, is_complete
@@ -143,7 +143,7 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
         calibration = planes_step(work, chosen.for_planes, progress)
         rows = output.fact_rows(planes_facts(calibration))
         rows += output.left_out_rows(calibration.poses)
-        rows += [("", told(sentence)) for sentence in planes_sentences(calibration)]
+        rows += [("", text_of(sentence)) for sentence in planes_sentences(calibration)]
         return _shown(work, "planes", rows, output.planes_json(calibration), "planes")
 
 
@@ -299,13 +299,13 @@ def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
     console = output.console()
     table = Table(box=None, padding=(0, 2, 0, 0))
     for name in SET_COLUMNS:
-        table.add_column(told(name), justify="left" if name in ("set", "verdict") else "right")
+        table.add_column(text_of(name), justify="left" if name in ("set", "verdict") else "right")
     for result in results:
         table.add_row(*map(visible, _set_row(result)))
     console.print(table)
     for result in results:
         if result.error:
-            console.print(visible(f"{result.folder.name}: {told(result.error)}"), soft_wrap=True)
+            console.print(visible(f"{result.folder.name}: {text_of(result.error)}"), soft_wrap=True)
 
 
 def _set_values(result: SetResult) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from core.calibrate.results import (
     FanCalibration,
     ProposedReadjustment,
 )
-from core.cli.language import spoken, told, tr
+from core.cli.language import spoken, text_of, tr
 from core.cli.talk import is_verbose
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
@@ -96,7 +96,7 @@ def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
         table.add_column(title, justify="right")
     total = sum(seconds.values())
     for name, spent in seconds.items():
-        table.add_row(told(name), spoken().number(spent, ".2f"), f"{spent / total:.0%}")
+        table.add_row(text_of(name), spoken().number(spent, ".2f"), f"{spent / total:.0%}")
     busy = tr("{n:.1f} processors busy for {seconds:.1f} s", n=total / wall_s, seconds=wall_s)
     table.add_row(tr("all"), spoken().number(total, ".2f"), busy)
     Console(stderr=True, highlight=False).print(table)
@@ -116,12 +116,12 @@ def check_rows(check: InterimCheck) -> Rows:
     """Make the rows of a check: its result, how far off the stripes are, and the error of a step of the part's
     height.
     """
-    return [(tr(VERDICT), told(check.sentence)), *fact_rows(check_facts(check)), *left_out_rows(check.poses)]
+    return [(tr(VERDICT), text_of(check.sentence)), *fact_rows(check_facts(check)), *left_out_rows(check.poses)]
 
 
 def left_out_rows(pictures: Iterable[Picture]) -> Rows:
     """Make the rows of why pictures were left out, one line a reason."""
-    return [("", told(one.line())) for one in left_out(pictures)]
+    return [("", text_of(one.line())) for one in left_out(pictures)]
 
 
 def check_json(check: InterimCheck) -> dict[str, Any]:
@@ -162,7 +162,7 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
     return [
         (tr("compared"), compared),
         *fact_rows(named(check.artefact.id, artefact_facts(check))),
-        ("", told(check.sentence)),
+        ("", text_of(check.sentence)),
     ]
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from core.cli.bar import bar
-from core.cli.language import spoken, told, tr
+from core.cli.language import spoken, text_of, tr
 from core.cli.options import EPILOG, ExitCode, Json, Panel, one_of
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def verify(
         (tr("results"), tr("{n} compared", n=found.results)),
         (tr("inputs"), tr("{n} compared", n=found.inputs)),
         (tr("differs"), str(len(found.problems))),
-        *(("", told(problem)) for problem in found.problems),
+        *(("", text_of(problem)) for problem in found.problems),
     ]
     values = {
         "entries": len(found.trail.entries),
@@ -201,7 +201,7 @@ def people(
     changed = replace(changed, people=tuple(left))
     if changed != rules:
         write_rules(project, changed, administrator)
-    rows: list[tuple[str, str]] = [(one.name, told(one.role)) for one in changed.people] or [
+    rows: list[tuple[str, str]] = [(one.name, text_of(one.role)) for one in changed.people] or [
         (tr("people"), tr("everybody may do everything"))
     ]
     rows.append((tr("reasons"), tr("asked for when limits change" if changed.reasons else "not asked for")))

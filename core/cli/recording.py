@@ -18,7 +18,7 @@ from core.acquire.settings import SourceSettings
 from core.acquire.source import SourceChoice, Step
 from core.cli import output
 from core.cli.interrupts import Interrupts, interruptible
-from core.cli.language import told, tr
+from core.cli.language import text_of, tr
 from core.cli.talk import say, say_aloud
 from core.errors import InputError
 from core.files.recording.recorder import Ending
@@ -164,33 +164,33 @@ class Recording:
     def _hear(self, event: LiveEvent) -> None:
         match event:
             case LiveStarted(name, (width, height)):
-                say(tr("{name}: {width} × {height} pixels", name=told(name), width=width, height=height))
+                say(tr("{name}: {width} × {height} pixels", name=text_of(name), width=width, height=height))
             case LiveView():
                 self._judge(event)
             case LiveTaken(name):
                 say(tr("{name} taken", name=name))
             case LiveAsk(sentence, button, answer) if self._by_itself:
-                say(told(sentence))
+                say(text_of(sentence))
                 self._commands.append(answer)
             case LiveAsk(sentence, button):
                 self._asked = event
-                say_aloud(tr("{sentence} Enter: {button}", sentence=told(sentence), button=tr(button)))
+                say_aloud(tr("{sentence} Enter: {button}", sentence=text_of(sentence), button=tr(button)))
             case LiveAnswered():
                 self._asked = None
             case LiveAdvice(Message() as sentence):
                 if time.monotonic() - self._advised_s >= STATUS_S:
                     self._advised_s = time.monotonic()
-                    say(told(sentence))
+                    say(text_of(sentence))
             case LiveNotice(sentence) | LiveUnplugged(sentence):
-                say(told(sentence))
+                say(text_of(sentence))
             case LiveBack():
                 say(tr("The source is there again."))
             case LiveChecks(checks):
                 for check in checks:
                     if check.state == "failed":
-                        say(told(check.message))
+                        say(text_of(check.message))
             case LiveSaving(waiting) if waiting:
-                say(told(_saving(waiting)))
+                say(text_of(_saving(waiting)))
 
     def _judge(self, view: LiveView) -> None:
         """See whether it is enough, and tell what is missing or how far a scan is."""
@@ -207,7 +207,7 @@ class Recording:
                 if missing != self._missing:
                     self._missing = missing
                     for sentence in missing:
-                        say(told(sentence))
+                        say(text_of(sentence))
                 if not missing and view.recorded and self._pictures is None:
                     self._is_enough = True
 
@@ -246,7 +246,7 @@ def show_sources(*, as_json: bool) -> None:
         return
     table = Table("--source", tr("name"), "--device", box=None, padding=(0, 2, 0, 0))
     for kind, called, device in rows:
-        table.add_row(kind, visible(told(called)), visible(device))
+        table.add_row(kind, visible(text_of(called)), visible(device))
     output.console().print(table)
 
 

@@ -12,7 +12,7 @@ from typing import cast
 from rich.table import Table
 
 from core.cli import output
-from core.cli.language import told, tr
+from core.cli.language import text_of, tr
 from core.cli.measuring import Shown, alone_with, exit_code, tell_of_cache
 from core.cli.options import ExitCode, one_of
 from core.errors import InputError
@@ -73,7 +73,7 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for name in (label("characteristic"), *HEADS):
         table.add_column(
-            told(name), justify="left" if name in ("characteristic", VERDICT) else "right", overflow="fold"
+            text_of(name), justify="left" if name in ("characteristic", VERDICT) else "right", overflow="fold"
         )
     words = output.words()
     for row in inspection.characteristics:
@@ -210,7 +210,7 @@ def run_export(
             todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
         )
     files = export_results(out, kinds, to, chosen.said, progress, in_camera_frame=in_camera_frame)
-    return Shown([(told(EXPORTS[name].title), path.name) for name, path in files.items()], {}, (), files)
+    return Shown([(text_of(EXPORTS[name].title), path.name) for name, path in files.items()], {}, (), files)
 
 
 def run_import(file: Path, out: Path) -> Shown:
