@@ -268,6 +268,6 @@ def _fact_table(look: ReportLook, table: FactTable) -> Table:
     return made
 
 
-def told(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
+def texts_by_name(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
     """Write the facts of a result for an auditor: value with unit, by its name."""
     return {fact.heading(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}

@@ -28,7 +28,7 @@ from core.report.layout.blocks import (
     ruled_table,
     section,
     side_by_side,
-    told,
+    texts_by_name,
 )
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
@@ -88,14 +88,14 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
         look.say("Camera", "small_strong"),
         camera_table(look, content.camera, half),
         Spacer(0, 1 * mm),
-        pairs_table(look, told(look, camera_facts(content.camera)), half, 26 * mm),
+        pairs_table(look, texts_by_name(look, camera_facts(content.camera)), half, 26 * mm),
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
         look.say("Laser planes, as the camera sees them", "small_strong"),
         fan_table(look, content.fan, other),
         Spacer(0, 1 * mm),
-        pairs_table(look, told(look, rest_of_planes(content.fan)), other, 27 * mm),
+        pairs_table(look, texts_by_name(look, rest_of_planes(content.fan)), other, 27 * mm),
         *(look.text(look.words(sentence), "small") for sentence in planes_sentences(content.fan)),
         Spacer(0, 2 * mm),
         look.text(f"{look.words('Rig')} {content.rig_id}".strip(), "small_strong"),

@@ -14,7 +14,7 @@ from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.facts.fact import Reader, for_reader
 from core.report.facts.of_features import HEADS, characteristic_cells, characteristic_facts
-from core.report.layout.blocks import heads, plain_table, ruled_table, told
+from core.report.layout.blocks import heads, plain_table, ruled_table, texts_by_name
 from core.report.layout.control_frame import ControlFrameMark
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
@@ -92,7 +92,7 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     words = look.words
     headline = [look.text(headed_name(one, words), "label"), _value(look, one)]
     parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
-    parts += _facts(look, told(look, characteristic_facts(one)[1:-1]), width)  # value and verdict stand above
+    parts += _facts(look, texts_by_name(look, characteristic_facts(one)[1:-1]), width)  # value and verdict stand above
     if scale := ToleranceScale.of(one):
         parts += [Spacer(0, 1 * mm), ToleranceBar(look, scale, width)]
     reason, meaning = decision_sentence(one, words), uncertainty_sentence(one.k, one.U, words)
@@ -153,7 +153,7 @@ def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowa
         look.text(look.words(points_counted(len(content.cloud))), "result"),
     ]
     _points, *rest = for_reader(content.scan_facts, Reader.TECHNICIAN)
-    facts = told(look, rest)
+    facts = texts_by_name(look, rest)
     sentence = look.say(
         "No pair of parallel faces was evaluated, so there is no thickness and no verdict: this report is of the cloud."
     )
