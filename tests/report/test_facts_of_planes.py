@@ -8,7 +8,7 @@ import numpy as np
 from core.calibrate.results import PlanePose
 from core.image.exclusion import Exclusion
 from core.model import Pose
-from core.report.facts.of_planes import told_of_pose
+from core.report.facts.of_planes import sentence_on_pose
 from core.translations import language
 
 NONE, SEEN = np.empty((0, 3)), np.ones((4, 3))
@@ -16,16 +16,16 @@ USED = PlanePose("pose00", Pose.identity(), 0.0312, (SEEN, NONE), (np.ones(4), n
 
 
 def test_a_pose_that_counts_tells_its_fit_and_lines_with_the_readers_decimal_sign():
-    assert str(told_of_pose(USED)) == (
+    assert str(sentence_on_pose(USED)) == (
         "pose00: stripes RMS 0.042 mm from their planes, target RMS 0.031 px, 1 line seen"
     )
-    assert str(told_of_pose(replace(USED, points=(SEEN, SEEN)))).endswith("2 lines seen")
-    assert "0,042" in language("de")(told_of_pose(USED))
+    assert str(sentence_on_pose(replace(USED, points=(SEEN, SEEN)))).endswith("2 lines seen")
+    assert "0,042" in language("de")(sentence_on_pose(USED))
 
 
 def test_a_pose_left_out_tells_why_and_how_far_off_it_is_where_that_is_known():
     out = replace(USED, used=False, exclusion=Exclusion.BY_HAND)
-    assert str(told_of_pose(out)) == f"pose00: left out ({out.reason}); its stripes are 0.042 mm off the planes"
-    assert str(told_of_pose(replace(out, rms_mm=math.nan))) == f"pose00: left out ({out.reason})"
+    assert str(sentence_on_pose(out)) == f"pose00: left out ({out.reason}); its stripes are 0.042 mm off the planes"
+    assert str(sentence_on_pose(replace(out, rms_mm=math.nan))) == f"pose00: left out ({out.reason})"
     unknown = replace(out, exclusion=None, rms_mm=math.nan)
-    assert str(told_of_pose(unknown)) == "pose00: left out (no reason recorded)"
+    assert str(sentence_on_pose(unknown)) == "pose00: left out (no reason recorded)"

@@ -15,7 +15,7 @@ from core.inspect.characteristic import thickness_characteristic
 from core.inspect.results import Contribution
 from core.messages import plain
 from core.model.certificate import Certificate
-from core.report.facts.of_budget import rows_told
+from core.report.facts.of_budget import reported_rows
 from core.report.pdf import build_report
 from core.report.template import SECTIONS
 from core.scan.results import FrameRecord
@@ -144,11 +144,11 @@ def test_page_one_has_one_hash_and_files_are_named_by_short_ones(data, content):
 def test_a_length_has_rows_of_size_and_temperatures_even_where_they_add_nothing(content):
     stated = thickness_characteristic(gauge(content.cloud, np.zeros(len(content.cloud), dtype=bool), k=2.0))
     known = replace(stated, budget=(Contribution(Cause.CAMERA, 0.01), Contribution(Cause.SCALE_ASSUMED, 0.002)))
-    told = [str(row.words) for row in rows_told(known)]
+    told = [str(row.words) for row in reported_rows(known)]
     assert told[2:] == ["temperature of the calibration target", "temperature of the part"]
-    assert [row.u_mm for row in rows_told(known)][2:] == [0, 0]
+    assert [row.u_mm for row in reported_rows(known)][2:] == [0, 0]
     for other in (replace(known, at_20=None), replace(known, quantity="angle", kind="angle"), stated):
-        assert rows_told(other) == other.budget
+        assert reported_rows(other) == other.budget
 
 
 def test_how_to_read_the_report_explains_its_letters(data):

@@ -69,7 +69,7 @@ def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fa
     ]
 
 
-def told_facts(content: ReportContent) -> list[tuple[str, Fact]]:
+def facts_of_steps(content: ReportContent) -> list[tuple[str, Fact]]:
     """List all facts of what the result rests on, each with the name of its result."""
     return [(of, fact) for of, facts in content.facts.items() for fact in facts]
 

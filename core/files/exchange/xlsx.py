@@ -24,11 +24,11 @@ from core.files.exchange.records import (
     as_table,
     budget_rows,
     fact_row,
+    facts_of_steps,
     facts_of_studies,
     frame_rows,
     result_row,
     setting_rows,
-    told_facts,
 )
 from core.inspect.characteristic import Characteristic
 from core.messages import decimals_of, label
@@ -92,7 +92,7 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
         "budget": _headed(BUDGET_HEADS, budgets, words),
         **({"studies": _facts(facts_of_studies(content, words), words)} if content.studies else {}),
         "frames": as_table(FRAME_COLUMNS, frame_rows(content)),
-        "facts": _facts(told_facts(content), words),
+        "facts": _facts(facts_of_steps(content), words),
         "settings": [["name", "value"], *setting_rows(content)],
     }
     for name, rows in tables.items():

@@ -28,7 +28,7 @@ from core.files.project.data import EARLIER_CALIBRATIONS, Accepted
 from core.files.reading import read_bytes, read_json
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.results.camera_file import camera_id, read_camera, write_camera
-from core.files.results.planes_file import planes_id, read_planes, tells_facts, write_planes
+from core.files.results.planes_file import planes_id, read_planes, states_all_facts, write_planes
 from core.files.tables import KeptMessage, OrNan, Time, kept
 from core.messages import Message
 from core.model import Camera
@@ -167,7 +167,8 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
     entries = [_read_about(path) for path in sorted(folder.glob(f"*{_KEPT}"))] if folder.is_dir() else []
     there = [entry for entry in entries if _path(folder, entry.kind, entry.id).exists()]
     told = [
-        replace(one, facts_known=one.kind != "planes" or tells_facts(_path(folder, "planes", one.id))) for one in there
+        replace(one, facts_known=one.kind != "planes" or states_all_facts(_path(folder, "planes", one.id)))
+        for one in there
     ]
     return tuple(sorted(told, key=lambda entry: entry.kept_at, reverse=True))
 

@@ -45,7 +45,7 @@ def frame_comments(frame: ViewFrame) -> list[str]:
     return [words, f"{_BACK}{numbers}"]
 
 
-def told_pose(comments: Sequence[str], path: Path) -> Pose:
+def pose_in_comments(comments: Sequence[str], path: Path) -> Pose:
     """Read from a file's head the motion into the camera frame; the identity where no frame is named.
 
     Raises

@@ -204,7 +204,7 @@ _FACTS = ("converged", "flatness_assumed")
 """Known of every calibration whose file tells facts: whether points lie off alike, few poses may leave open."""
 
 
-def tells_facts(path: Path) -> bool:
+def states_all_facts(path: Path) -> bool:
     """Whether a planes.json states all facts on which a verdict depends; not in an earlier version, or damaged."""
     try:
         tables = read_json(path)

@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.limits import LARGEST
 from core.files.reading import MISSING, read_bytes
-from core.files.results.frame_text import frame_comments, told_pose
+from core.files.results.frame_text import frame_comments, pose_in_comments
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Command, Message
@@ -133,7 +133,7 @@ def read_cloud(path: Path) -> CloudFile:
     if set(_RESTS) <= set(known):
         points += columns(*_RESTS)
     points += _told_offset(data.comments, path)
-    pose = told_pose(data.comments, path)
+    pose = pose_in_comments(data.comments, path)
     cloud = Cloud(
         points=pose.apply(points),
         uv=columns("image_u", "image_v"),
@@ -220,7 +220,7 @@ def read_mesh_file(path: Path) -> MeshFile:
         raise InputError(
             Message("file.triangle_without_vertex", "a triangle names a vertex that is not there"), where=path
         )
-    pose = told_pose(data.comments, path)
+    pose = pose_in_comments(data.comments, path)
     mesh = Mesh(
         vertices=pose.apply(_columns(vertices, ("x", "y", "z"))),
         normals=_columns(vertices, ("nx", "ny", "nz")) @ pose.rotation.T,

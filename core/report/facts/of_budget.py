@@ -40,7 +40,7 @@ def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
     digits = _digits(one)
     root = label("Root of the sum of squares of all rows (k = 1)")
     about_U = Message("told.expanded", "expanded uncertainty U = k·u, k = {k:g}", k=one.k)
-    contributions = (replace(_contribution(one, row), label=row.words) for row in rows_told(one))
+    contributions = (replace(_contribution(one, row), label=row.words) for row in reported_rows(one))
     return (
         *contributions,
         Fact(label("combined standard uncertainty u"), factor * one.u, unit, digits, root),
@@ -57,7 +57,7 @@ ALWAYS_TOLD = (
 """What every length follows, as stated and as assumed: a reader misses the row where it is nothing."""
 
 
-def rows_told(one: Characteristic) -> tuple[Contribution, ...]:
+def reported_rows(one: Characteristic) -> tuple[Contribution, ...]:
     """Return the rows of its budget, and for a length those of size and temperatures that add nothing.
 
     Of a budget that is not of this program's causes, of a comparison, which they cancel in, and of one of which it is
@@ -85,7 +85,7 @@ def input_cells(one: Characteristic) -> tuple[tuple[Fact, ...], ...]:
     """
     _, factor = shown_unit(one)
     variance = sum(row.u_mm**2 for row in one.budget if math.isfinite(row.u_mm)) or 1.0
-    return tuple(_cells(one, row, factor, row.u_mm**2 / variance) for row in rows_told(one))
+    return tuple(_cells(one, row, factor, row.u_mm**2 / variance) for row in reported_rows(one))
 
 
 def _cells(one: Characteristic, row: Contribution, factor: float, share: float) -> tuple[Fact, ...]:

@@ -106,7 +106,7 @@ def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:
     return (*(() if verdict is None else (Message("told.sentence", "{what:capital}.", what=verdict),)), *moved)
 
 
-def told_of_pose(pose: PlanePose) -> Message:
+def sentence_on_pose(pose: PlanePose) -> Message:
     """Make the sentence of how well a pose fits and how many lines it shows.
 
     Or why it is left out and how far off it is.

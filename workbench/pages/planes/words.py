@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.findings.table import without_notes_on
-from core.report.facts.of_planes import planes_sentences, told_of_pose
+from core.report.facts.of_planes import planes_sentences, sentence_on_pose
 from workbench.language import sentence, text_of, tr
 
 
@@ -33,5 +33,5 @@ def short_names(names: Sequence[str]) -> list[str]:
 def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
     """Make the sentence on one pose; for one that is in no calibration, the `reason` by its pictures."""
     if pose is not None:
-        return text_of(told_of_pose(pose))
+        return text_of(sentence_on_pose(pose))
     return tr("{name}: left out ({reason})", name=name, reason=reason) if reason else name
