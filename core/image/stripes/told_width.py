@@ -43,7 +43,7 @@ def as_measured(
     return told, found
 
 
-def told_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings | None]) -> tuple[Message, ...]:
+def stated_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings | None]) -> tuple[Message, ...]:
     """Note if a width was `told` and other widths were `used` instead, with the one farthest from it."""
     if told is None:
         return ()

@@ -29,7 +29,7 @@ from core.image.repeated import Repeats, pixels_of
 from core.image.stripes.exchanged import EXCHANGED, PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.image.stripes.noise import Compression
 from core.image.stripes.stripe import StripeSettings
-from core.image.stripes.told_width import told_width_notes
+from core.image.stripes.told_width import stated_width_notes
 from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.no_stripe import also_look_at_ridges, write_ridges
@@ -134,7 +134,7 @@ def measure_poses(
             raise InputError(EXCHANGED, where=recording_set.where(part), todo=_EXCHANGE)
         features.append(PoseFeatures(pose.name, None, (), Exclusion.REPEATED) if repeats.again(*pixels) else pose)
         progress("plane poses", len(features), total)
-    of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
+    of_all = (*chosen.notes(part), *stated_width_notes(stripe, [usual_stripe(features)]))
     features[0] = replace(features[0], notes=(*of_all, *features[0].notes))
     return tuple(features)
 

@@ -12,7 +12,7 @@ from core.image.stripes.extraction import StripeSettings, extract_centrelines
 from core.image.stripes.positions import _disagreement_px
 from core.image.stripes.runs import arc_length
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
-from core.image.stripes.told_width import as_measured, told_width_notes
+from core.image.stripes.told_width import as_measured, stated_width_notes
 from tests.image.bound import Stripe
 from tests.image.second_generator import NOISE, bound, picture
 
@@ -85,7 +85,7 @@ def test_a_wrong_width_makes_neither_the_line_nor_its_sigma_worse(angle_deg: flo
 
 def test_a_width_is_told_to_be_wrong_only_where_it_is_quite_another() -> None:
     told, near, far = StripeSettings(6.0, 100.0), StripeSettings(7.0, 90.0), StripeSettings(10.04, 80.0)
-    assert told_width_notes(told, [near, None]) == ()
-    assert told_width_notes(None, [far]) == ()
-    (note,) = told_width_notes(told, [near, far])
+    assert stated_width_notes(told, [near, None]) == ()
+    assert stated_width_notes(None, [far]) == ()
+    (note,) = stated_width_notes(told, [near, far])
     assert "told to be 6.0 px wide, but are 10.0 px" in str(note)

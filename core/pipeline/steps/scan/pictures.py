@@ -18,7 +18,7 @@ from core.findings.table import note_of
 from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
-from core.image.stripes.told_width import told_width_notes
+from core.image.stripes.told_width import stated_width_notes
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
@@ -117,7 +117,7 @@ def look_at_scan(
     watch = watching(shown) if watching else None
     seen = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, further)
     lines, averaged = (replace(each, image_size=shown.image_size) for each in seen)
-    of_width = told_width_notes(settings.stripe, lines.stripes)
+    of_width = stated_width_notes(settings.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     mosaic = mosaic_of(reference.fan, reference.base)
