@@ -88,7 +88,7 @@ def _failed(error: BaseException, words: Sequence[str], interrupts: Interrupts) 
     """
     if interrupts.signal or not isinstance(error, Exception) or isinstance(error, Cancelled):
         told = language.tr("interrupted; what was finished before is whole, nothing is half written.")
-        talk.say_aloud(f"trisect: {told}")
+        talk.print_always(f"trisect: {told}")
         return interrupts.code
     from core.files.reading import refused_path
 
@@ -155,7 +155,7 @@ def _say_unusable(unusable: Sequence[Brought]) -> None:
         from core.findings.brought import note_on_unusable
 
         for one in unusable:
-            talk.say(language.text_of(note_on_unusable(one)))
+            talk.print_line(language.text_of(note_on_unusable(one)))
 
 
 def _fault(words: Sequence[str], error: Exception) -> InputError:
@@ -180,4 +180,4 @@ def _refuse(error: InputError, *, as_json: bool) -> None:
             "todo": as_json_message(error.todo),
         }
         sys.stdout.write(to_json(told))
-    talk.say_aloud(f"trisect: {language.text_of(error)}")
+    talk.print_always(f"trisect: {language.text_of(error)}")

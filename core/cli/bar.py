@@ -16,7 +16,7 @@ from rich.text import Text
 
 from core.cli.interrupts import interruptible
 from core.cli.language import text_of, tr
-from core.cli.talk import is_quiet, is_verbose, say
+from core.cli.talk import is_quiet, is_verbose, print_line
 from core.progress import Progress
 from core.remaining import USUAL_S, Remaining, in_words
 
@@ -32,7 +32,7 @@ def bar(job: str = "") -> Iterator[Progress]:
 
     `job` is its name in `USUAL_S`, if it is one of these.
     """
-    telling = _lines(_LONG_S) if tells_lines() else _quiet() if is_quiet() else _drawn(job)
+    telling = _lines(_LONG_S) if prints_lines() else _quiet() if is_quiet() else _drawn(job)
     with interruptible() as interrupts, telling as show:
 
         def progress(step: str, done: int, total: int) -> None:
@@ -42,7 +42,7 @@ def bar(job: str = "") -> Iterator[Progress]:
         yield progress
 
 
-def tells_lines() -> bool:
+def prints_lines() -> bool:
     """Whether stages are shown as lines: off a terminal, unless the command is quiet."""
     return not is_quiet() and not sys.stderr.isatty()
 
@@ -66,7 +66,7 @@ def _lines(long_s: float, *, begun: bool = True, of: str = "") -> Iterator[Progr
         took = time.monotonic() - since
         if stage and (is_verbose() or took >= long_s):
             said = f"{of}, {text_of(stage)}" if of else text_of(stage)
-            say(tr("{stage}: {seconds:.1f} s", stage=said, seconds=took))
+            print_line(tr("{stage}: {seconds:.1f} s", stage=said, seconds=took))
 
     def show(step: str, done: int, total: int) -> None:
         nonlocal stage, since
@@ -75,7 +75,7 @@ def _lines(long_s: float, *, begun: bool = True, of: str = "") -> Iterator[Progr
         end()
         stage, since = step, time.monotonic()
         if begun:
-            say(tr("{stage} …", stage=text_of(stage)))
+            print_line(tr("{stage} …", stage=text_of(stage)))
 
     yield show
     end()

@@ -78,7 +78,7 @@ def speak_as(name: str, loudness: talk.Loudness) -> None:
 def choose_loudness(loudness: talk.Loudness) -> None:
     """Set the loudness from now on; if verbose, each file that is read is printed."""
     talk.choose(loudness)
-    listen((lambda path: talk.say(tr("file read: {file}", file=path))) if talk.is_verbose() else None)
+    listen((lambda path: talk.print_line(tr("file read: {file}", file=path))) if talk.is_verbose() else None)
 
 
 def _named(wanted: Sequence[str]) -> Language:

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from core.acquire.channel import Channel
 from core.cli import output, talk
-from core.cli.bar import lines_of, tells_lines
+from core.cli.bar import lines_of, prints_lines
 from core.cli.language import speak_as, spoken, text_of, tr
 from core.cli.options import ExitCode
 from core.code_cache import note_on_cache
@@ -94,17 +94,17 @@ def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
     return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
-def tell_of_cache() -> None:
+def print_cache_note() -> None:
     """Print where compiled code is saved, if verbose, and that it is lost at the end, if it is."""
     if talk.is_verbose():
-        talk.say(tr("compiled code: {folder}", folder=FOLDER))
+        talk.print_line(tr("compiled code: {folder}", folder=FOLDER))
     if (note := note_on_cache()) is not None and not is_complete():
-        talk.say(tr("note: {note}", note=note))
+        talk.print_line(tr("note: {note}", note=note))
 
 
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
     """Run all steps; loops that were never compiled before are compiled first."""
-    tell_of_cache()
+    print_cache_note()
     compile_ahead(progress)
     return run(folder, out, chosen, progress, beside)
 
@@ -233,7 +233,7 @@ def run_profile(
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
     """Open and lock a recording set, with this channel for the laser, and the folder of its results."""
     work = Workspace.open(open_set(folder).seen_in(channel), out, part)
-    tell_of_cache()
+    print_cache_note()
     with alone_in(work.out):
         yield work
 
@@ -250,8 +250,8 @@ def run_sets(
     """Measure all sets; InputError before anything is begun if the folder of one is not there."""
     for folder in sets:
         require_folder(folder)
-    tell_of_cache()
-    aloud = tells_lines() and not executor.startswith(DASK)  # a cluster's workers have nobody who listens
+    print_cache_note()
+    aloud = prints_lines() and not executor.startswith(DASK)  # a cluster's workers have nobody who listens
     measure = partial(measure_aloud, spoken().name, talk.loudness()) if aloud else measure_set
     with executor_of(executor, workers) as pool:
         return run_batch(sets, out, pool, chosen, progress, measure=measure)

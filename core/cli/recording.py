@@ -19,7 +19,7 @@ from core.acquire.source import SourceChoice, Step
 from core.cli import output
 from core.cli.interrupts import Interrupts, interruptible
 from core.cli.language import text_of, tr
-from core.cli.talk import say, say_aloud
+from core.cli.talk import print_always, print_line
 from core.errors import InputError
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import read_rig, require_tables
@@ -164,33 +164,33 @@ class Recording:
     def _hear(self, event: LiveEvent) -> None:
         match event:
             case LiveStarted(name, (width, height)):
-                say(tr("{name}: {width} × {height} pixels", name=text_of(name), width=width, height=height))
+                print_line(tr("{name}: {width} × {height} pixels", name=text_of(name), width=width, height=height))
             case LiveView():
                 self._judge(event)
             case LiveTaken(name):
-                say(tr("{name} taken", name=name))
+                print_line(tr("{name} taken", name=name))
             case LiveAsk(sentence, button, answer) if self._by_itself:
-                say(text_of(sentence))
+                print_line(text_of(sentence))
                 self._commands.append(answer)
             case LiveAsk(sentence, button):
                 self._asked = event
-                say_aloud(tr("{sentence} Enter: {button}", sentence=text_of(sentence), button=tr(button)))
+                print_always(tr("{sentence} Enter: {button}", sentence=text_of(sentence), button=tr(button)))
             case LiveAnswered():
                 self._asked = None
             case LiveAdvice(Message() as sentence):
                 if time.monotonic() - self._advised_s >= STATUS_S:
                     self._advised_s = time.monotonic()
-                    say(text_of(sentence))
+                    print_line(text_of(sentence))
             case LiveNotice(sentence) | LiveUnplugged(sentence):
-                say(text_of(sentence))
+                print_line(text_of(sentence))
             case LiveBack():
-                say(tr("The source is there again."))
+                print_line(tr("The source is there again."))
             case LiveChecks(checks):
                 for check in checks:
                     if check.state == "failed":
-                        say(text_of(check.message))
+                        print_line(text_of(check.message))
             case LiveSaving(waiting) if waiting:
-                say(text_of(_saving(waiting)))
+                print_line(text_of(_saving(waiting)))
 
     def _judge(self, view: LiveView) -> None:
         """See whether it is enough, and tell what is missing or how far a scan is."""
@@ -202,12 +202,12 @@ class Recording:
                 self._began_s = now if self._began_s is None else self._began_s
                 if now - self._told_s >= STATUS_S:
                     self._told_s = now
-                    say(_status(view, detail))
+                    print_line(_status(view, detail))
             case CameraDetail(missing=missing) | PlanesDetail(missing=missing) if self._step != "check":
                 if missing != self._missing:
                     self._missing = missing
                     for sentence in missing:
-                        say(text_of(sentence))
+                        print_line(text_of(sentence))
                 if not missing and view.recorded and self._pictures is None:
                     self._is_enough = True
 

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from core.cli import output
 from core.cli.language import text_of, tr
-from core.cli.measuring import Shown, alone_with, exit_code, tell_of_cache
+from core.cli.measuring import Shown, alone_with, exit_code, print_cache_note
 from core.cli.options import ExitCode, one_of
 from core.errors import InputError
 from core.files.atomic import make_folder
@@ -48,7 +48,7 @@ def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) 
     asked, folder = read_plan(plan), out or source
     if out is not None:
         make_folder(out)
-    tell_of_cache()
+    print_cache_note()
     with alone_in(folder) if folder.is_dir() else nullcontext():
         return inspect_step(source, asked, plan.parent, out, progress)
 

@@ -41,13 +41,13 @@ def is_verbose() -> bool:
     return _loudness is Loudness.VERBOSE
 
 
-def say(line: str) -> None:
+def print_line(line: str) -> None:
     """Print a line, unless the command is quiet."""
     if not is_quiet():
-        say_aloud(line)
+        print_always(line)
 
 
-def say_aloud(line: str) -> None:
+def print_always(line: str) -> None:
     """Print a line even if the command is quiet: errors, and questions to the user."""
     with suppress(OSError):  # a terminal that was closed hears nothing
         sys.stderr.write(f"{visible(line)}\n")
