@@ -185,7 +185,7 @@ class Remaining:
         self._pace = _Pace()
         self.seconds: dict[str, float] = {}
 
-    def tell(self, stage: str, done: int, total: int) -> None:
+    def report(self, stage: str, done: int, total: int) -> None:
         """Report the job's progress."""
         if stage != self._stage:
             self._close()

@@ -40,7 +40,7 @@ def replayed(usual, took):
         began = clock.now
         for number in range(40):
             clock.now = began + seconds * number / 40
-            remaining.tell(stage, number * REPORTS[stage] // 40, REPORTS[stage])
+            remaining.report(stage, number * REPORTS[stage] // 40, REPORTS[stage])
             shown.append((clock.now / whole, remaining.share, remaining.left, whole - clock.now))
         clock.now = began + seconds
     return shown
@@ -63,7 +63,7 @@ def under_load(usual, random, load):
     work, begin = sum(seconds for _, _, seconds in steps), random.uniform(*load[0])
     done, moments = 0.0, []
     for stage, number, seconds in steps:
-        remaining.tell(stage, number, REPORTS[stage])
+        remaining.report(stage, number, REPORTS[stage])
         for moment in range(8):
             quiet = done + seconds * moment / 8
             clock.now = min(quiet, begin * work) + max(quiet - begin * work, 0.0) * slower
@@ -152,7 +152,7 @@ def test_what_is_shown_never_goes_back(job):
 def test_a_whole_job_of_which_only_the_end_is_to_be_done_does_not_wait_for_its_beginning():
     clock = Clock()
     remaining = Remaining(USUAL_S["measure_all"], clock=clock)
-    remaining.tell("faces", 0, 1)
+    remaining.report("faces", 0, 1)
     assert remaining.left < 0.5 * sum(USUAL_S["measure_all"].values())
 
 
@@ -163,25 +163,25 @@ def test_nothing_is_said_of_a_job_that_is_not_known_and_has_just_begun():
 def test_a_job_that_is_not_known_is_judged_by_the_share_of_its_stage():
     clock = Clock()
     remaining = Remaining({}, clock=clock)
-    remaining.tell("frames", 0, 60)
+    remaining.report("frames", 0, 60)
     clock.now = 10.0
-    remaining.tell("frames", 20, 60)
+    remaining.report("frames", 20, 60)
     assert remaining.left == pytest.approx(20.0)
 
 
 def test_what_is_remembered_of_the_last_time_takes_the_place_of_what_is_usual():
     remaining = Remaining({"read": 1.0, "solve": 1.0, "write": 1.0}, {"solve": 7.0, "read": 2.0}, Clock())
-    remaining.tell("read", 0, 10)
+    remaining.report("read", 0, 10)
     assert remaining.left == pytest.approx(10.0)
 
 
 def test_later_stages_count_as_much_slower_as_the_others_are_now():
     clock = Clock()
     remaining = Remaining({"read": 2.0, "solve": 6.0}, clock=clock)
-    remaining.tell("read", 0, 10)
+    remaining.report("read", 0, 10)
     assert remaining.left == pytest.approx(8.0)
     clock.now = 4.0  # twice as slow as the last time
-    remaining.tell("solve", 0, 1)
+    remaining.report("solve", 0, 1)
     assert remaining.left == pytest.approx(12.0, rel=0.1)
     assert remaining.share == pytest.approx(0.25, rel=0.1)
 
@@ -194,7 +194,7 @@ def test_a_stage_that_tells_thousands_of_pieces_at_once_is_not_taken_to_be_late(
     for batch in range(batches):
         for moment in range(4):
             clock.now = 10.0 * slower * (batch + moment / 4) / batches
-            remaining.tell("write", batch * points // batches, points)
+            remaining.report("write", batch * points // batches, points)
             assert batch < 5 or remaining.left == pytest.approx(20.0 * slower - clock.now, rel=0.3)
             assert batch > 0 or remaining.left == pytest.approx(20.0 - clock.now, rel=0.1), "nothing is known yet"
 
@@ -204,7 +204,7 @@ def test_batches_that_stay_away_are_late():
     remaining = Remaining({"write": 10.0}, clock=clock)
     for batch in range(6):
         clock.now = float(batch)
-        remaining.tell("write", batch * 100, 1000)
+        remaining.report("write", batch * 100, 1000)
     in_time = remaining.left
     clock.now = 10.0
     assert in_time == pytest.approx(5.0, rel=0.1)
@@ -214,9 +214,9 @@ def test_batches_that_stay_away_are_late():
 def test_what_the_stages_took_is_kept_for_the_next_time():
     clock = Clock()
     remaining = Remaining({}, clock=clock)
-    remaining.tell("read", 0, 1)
+    remaining.report("read", 0, 1)
     clock.now = 3.0
-    remaining.tell("solve", 0, 1)
+    remaining.report("solve", 0, 1)
     clock.now = 4.0
     assert remaining.finish() == {"read": 3.0, "solve": 1.0}
 

@@ -565,7 +565,7 @@ class MainWindow(QMainWindow):
 
     def _task_progressed(self, _: Task, stage: str, done: int, total: int) -> None:
         self._stage, self._counted = stage, (done, total)
-        self._remaining.tell(stage, done, total)
+        self._remaining.report(stage, done, total)
         self._show_progress()
 
     def _show_progress(self) -> None:

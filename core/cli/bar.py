@@ -99,7 +99,7 @@ def _drawn(job: str) -> Iterator[Progress]:
 
         def show(step: str, done: int, total: int) -> None:
             with telling:
-                remaining.tell(step, done, total)
+                remaining.report(step, done, total)
             tell(step, done, total)
             said = text_of(step)
             drawn.update(shown, description=said, refresh=said != drawn.tasks[0].description)

@@ -205,7 +205,7 @@ class _UnderWay:
     def __call__(self, step: str, done: int, total: int) -> None:
         with self._telling:
             self._stage = step
-            self._remaining.tell(step, done, total)
+            self._remaining.report(step, done, total)
 
     def now(self) -> SetProgress:
         """How far it is."""

@@ -267,7 +267,7 @@ class ManySetsWindow(QWidget):
         self._show()
 
     def _progressed(self, stage: str, done: int, total: int) -> None:
-        self._remaining.tell(stage, done, total)
+        self._remaining.report(stage, done, total)
         self._done_share = done / total if total else 0.0
         self._show_progress()
 
