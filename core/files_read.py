@@ -16,7 +16,7 @@ def listen(listener: Callable[[Path], None] | None) -> None:
     _told.clear()
 
 
-def tell(path: Path) -> None:
+def report_read(path: Path) -> None:
     """Report to the listener that a file is read."""
     if _listener is not None and path not in _told:
         _told.add(path)

@@ -103,7 +103,7 @@ class SecondProcess:
         self._told = None
         result, seconds, read = value
         for path in read:
-            files_read.tell(path)
+            files_read.report_read(path)
         if isinstance(progress, StageTimes):
             progress.add(seconds)
         if kind == "raised":

@@ -14,7 +14,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.files.limits import DATA_BYTES, TEXT_BYTES, TOML_BYTES, check_file, check_json, check_toml
-from core.files_read import tell
+from core.files_read import report_read
 from core.messages import Message
 
 _REFUSED = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM)
@@ -30,7 +30,7 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
         content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
         raise cannot_read(path, error) from error
-    tell(path)
+    report_read(path)
     return content
 
 
@@ -74,7 +74,7 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         ) from error
     except (OSError, ValueError) as error:
         raise cannot_read(path, error) from error
-    tell(path)
+    report_read(path)
     return text
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import WrongValue
 from core.files.limits import STL_BYTES, check_file
-from core.files_read import tell
+from core.files_read import report_read
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -37,7 +37,7 @@ def read_corners(path: Path) -> Array:
         If a number is none, or a triangle has not three corners.
     """
     check_file(path, most=STL_BYTES)
-    tell(path)
+    report_read(path)
     data = path.read_bytes()
     if len(data) == _START + TRIANGLE.itemsize * int.from_bytes(data[HEAD:_START], "little"):
         with np.errstate(invalid="ignore"):  # numbers that are none stay so
