@@ -112,7 +112,7 @@ class LiveCamera:
     def rest(self) -> None:
         """Do nothing: no work is waiting."""
 
-    def tell(self, command: Command) -> None:
+    def handle(self, command: Command) -> None:
         """Handle the commands Capture, Auto, Discard and LookFor."""
         match command:
             case Capture():

@@ -44,7 +44,7 @@ class LiveStep(Protocol):
     def rest(self) -> None:
         """Do some of the waiting work, if there is time, after a picture has been shown."""
 
-    def tell(self, command: Command) -> None:
+    def handle(self, command: Command) -> None:
         """Handle a command that is not for the loop itself."""
 
     def finish(self) -> None:

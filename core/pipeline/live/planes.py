@@ -138,7 +138,7 @@ class LivePlanes:
     def rest(self) -> None:
         """Do nothing: no work is waiting."""
 
-    def tell(self, command: Command) -> None:
+    def handle(self, command: Command) -> None:
         """Handle the commands Capture, Auto and Discard, and a change of the source's settings."""
         match command:
             case Configure():

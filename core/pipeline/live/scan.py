@@ -175,7 +175,7 @@ class LiveScan:
             renewed=renewed,
         )
 
-    def tell(self, command: Command) -> None:
+    def handle(self, command: Command) -> None:
         """Handle TakeReference, Pause, Resume and Mark, and a change of the source's settings."""
         match command:
             case Configure():

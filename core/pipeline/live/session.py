@@ -168,7 +168,7 @@ class LiveLoop:
                     try:
                         self._source.configure(settings)
                         self._context.settings = self._context.settings.updated(settings)
-                        self._step.tell(command)
+                        self._step.handle(command)
                     except Unplugged:
                         raise
                     except InputError as error:
@@ -179,7 +179,7 @@ class LiveLoop:
                             Message("live.lasers_by_hand", "This source cannot switch the lasers: do it by hand.")
                         )
                 case _:
-                    self._step.tell(command)
+                    self._step.handle(command)
 
     def _show(self) -> None:
         """Send the window a picture if it is ready for one and there is a new one."""
