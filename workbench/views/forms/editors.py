@@ -201,9 +201,9 @@ class MultilineEditor(QPlainTextEdit):
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)
         if event.reason() != Qt.FocusReason.PopupFocusReason:
-            self.tell()
+            self.emit_if_changed()
 
-    def tell(self) -> None:
+    def emit_if_changed(self) -> None:
         """Emit the text if it has changed."""
         if self.toPlainText() != self._told:
             self._told = self.toPlainText()
