@@ -22,7 +22,7 @@ FOLDER = ROOT / "resources" / "translations"
 
 CODED = {"Message": slice(1, 2), "plural_message": slice(1, 3), "Finding": slice(3, 5)}
 """Calls whose first argument is a code, and which of their arguments are its texts."""
-WORDS_AT = {"tr": slice(1), "label": slice(1), "words": slice(1), "say": slice(1), "section": slice(2, 3),
+WORDS_AT = {"tr": slice(1), "label": slice(1), "words": slice(1), "fixed_text": slice(1), "section": slice(2, 3),
             "heads": slice(1, None), "progress": slice(1), "steps": slice(2, 3)}  # fmt: skip
 """Calls that tell fixed words, and which of their arguments those are."""
 

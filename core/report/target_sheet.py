@@ -223,7 +223,7 @@ def _draw_words(canvas: Any, target: Target, paper: SheetPaper, layout: SheetLay
     name = f"{title[:MOST_TITLE]} · " if title else ""
     head = LOOK.text(f"{name}{', '.join(parts)}, on {paper}", "strong")
     top = (EDGE_MM + FOOT_MM - 12.5) * mm
-    for paragraph in (head, LOOK.say(HOW_TO_PRINT, "small")):
+    for paragraph in (head, LOOK.fixed_text(HOW_TO_PRINT, "small")):
         _, height = paragraph.wrap(width, top)
         top -= height
         paragraph.drawOn(canvas, left, top)

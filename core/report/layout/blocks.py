@@ -196,7 +196,7 @@ def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Fl
 def pairs_table(look: ReportLook, pairs: Mapping[str, str], width: float, label_width: float) -> Table:
     """Make a table of label and value, one pair a row."""
     rows = [[look.text(label, "label"), look.text(value, "small")] for label, value in pairs.items()]
-    nothing = [[look.say("none", "small"), look.text("", "small")]]
+    nothing = [[look.fixed_text("none", "small"), look.text("", "small")]]
     return plain_table(rows or nothing, [label_width, width - label_width])
 
 
@@ -228,7 +228,7 @@ def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flow
     """Make the line 'and 12 more, listed in run.json', or nothing; `where` in fixed words or the name of a file."""
     if left <= 0:
         return []
-    return [look.say("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
+    return [look.fixed_text("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
 
 
 def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:

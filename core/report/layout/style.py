@@ -241,7 +241,7 @@ class ReportLook:
         ]
         return [Paragraph(markup(piece) or "\u00a0", self.style("small")) for piece in pieces]
 
-    def say(self, english: str, style: str = "body", /, **values: object) -> Paragraph:
+    def fixed_text(self, english: str, style: str = "body", /, **values: object) -> Paragraph:
         """Make a paragraph of fixed words in the report's language."""
         return self.text(self.words(english, **values), style)
 

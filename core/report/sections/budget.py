@@ -33,7 +33,10 @@ def budget_table(look: ReportLook, one: Characteristic) -> Table:
     sources, last = facts[: len(cells)], facts[len(cells) :]
     names = [fact.column(words) if place in IN_HEAD else fact.title(words) for place, fact in enumerate(cells[0])]
     styles = ["head" if place == DISTRIBUTION else "head_number" for place in range(len(names))]
-    head = [look.say(INPUT, "head"), *(look.text(name, style) for name, style in zip(names, styles, strict=True))]
+    head = [
+        look.fixed_text(INPUT, "head"),
+        *(look.text(name, style) for name, style in zip(names, styles, strict=True)),
+    ]
     rows: list[list[Flowable]] = [head]
     for source, row in zip(sources, cells, strict=True):
         shown = (_cell(look, place, fact) for place, fact in enumerate(row))

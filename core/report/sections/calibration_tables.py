@@ -27,7 +27,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
         made = look.words("not known") if mark.made_at is None else look.words.time(mark.made_at)
         rows.append(
             [
-                look.say(KINDS[mark.of], "small"),
+                look.fixed_text(KINDS[mark.of], "small"),
                 look.text(mark.id, "small"),
                 look.text(made, "small"),
                 look.text(age_words(look, mark, content), "small"),

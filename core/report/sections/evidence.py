@@ -64,7 +64,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
         title = f"{one.artefact.id} ({words(KINDS[one.artefact.kind])})"
         rows.append([look.text(title, "small"), *cells])
     shares = (0.115, 0.08, 0.13, 0.135, 0.17, 0.05, 0.11, 0.105, 0.105)
-    note = look.say(
+    note = look.fixed_text(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
         "was measured and of the error with k = 2. E_n is the error over the U of both together; above 1 nothing is "
         "conforming.",
@@ -85,14 +85,14 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
     half = (TEXT_WIDTH - GAP) * 0.42
     other = TEXT_WIDTH - GAP - half
     camera: list[Flowable] = [
-        look.say("Camera", "small_strong"),
+        look.fixed_text("Camera", "small_strong"),
         camera_table(look, content.camera, half),
         Spacer(0, 1 * mm),
         pairs_table(look, texts_by_name(look, camera_facts(content.camera)), half, 26 * mm),
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
-        look.say("Laser planes, as the camera sees them", "small_strong"),
+        look.fixed_text("Laser planes, as the camera sees them", "small_strong"),
         fan_table(look, content.fan, other),
         Spacer(0, 1 * mm),
         pairs_table(look, texts_by_name(look, rest_of_planes(content.fan)), other, 27 * mm),
@@ -113,7 +113,7 @@ def _check(look: ReportLook, content: ReportContent) -> list[Flowable]:
         return []
     return [
         Spacer(0, 2 * mm),
-        look.say("Check of camera and laser", "small_strong"),
+        look.fixed_text("Check of camera and laser", "small_strong"),
         look.text(look.words(content.check.sentence), "small"),
         figures(look, check_facts(content.check), 5),
     ]
@@ -155,9 +155,9 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
     used = [frame.name for frame in content.frames if frame.used]
     parts: list[Flowable] = [figures(look, content.scan_facts)]
     if not content.frames:
-        parts.append(look.say("No frame was given.", "small"))
+        parts.append(look.fixed_text("No frame was given.", "small"))
     if used:
-        parts.append(look.say("From {first} to {last}.", "small", first=used[0], last=used[-1]))
+        parts.append(look.fixed_text("From {first} to {last}.", "small", first=used[0], last=used[-1]))
     out = [*left_out(content.frames), *left_out((*content.camera.views, *content.fan.poses))]
     if out:
         parts += [Spacer(0, 1.5 * mm), *left_out_table(look, out, TEXT_WIDTH, limits.reasons, limits.names)]
@@ -197,7 +197,7 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
     over_all = look.words("SHA-256 over version, method and settings: {hash}", hash=short_hash(content.settings_digest))
     body = [side_by_side(columns[0], columns[1], TEXT_WIDTH), look.text(over_all, "small")]
     if content.audit is not None:
-        said = look.say("Audit trail of the project, SHA-256 of entry {n}:", "small", n=content.audit.n)
+        said = look.fixed_text("Audit trail of the project, SHA-256 of entry {n}:", "small", n=content.audit.n)
         body += [said, Paragraph(markup(content.audit.sha256), look.style("mono"))]
     return [
         section(look, "settings", "Software and settings", body),
@@ -208,7 +208,7 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Make the section of the hash over all inputs, and, unless hidden, that of each."""
     if not content.hashes:
-        return [section(look, "inputs", "Inputs", [look.say("No hashes of the inputs were given.", "small")])]
+        return [section(look, "inputs", "Inputs", [look.fixed_text("No hashes of the inputs were given.", "small")])]
     listed = "inputs" not in content.hidden
     counted = look.words(plural_message("report.inputs", "{n:,} input", "{n:,} inputs", n=len(content.hashes)))
     if listed:

@@ -29,7 +29,7 @@ def head(look: ReportLook, content: ReportContent) -> list[Flowable]:
     name = template.name or content.laboratory
     lines = [look.text(line, "laboratory") for line in (name, *template.address) if line]
     right: list[Flowable] = [*_logo(template.logo), *lines] or [look.text("", "laboratory")]
-    top = plain_table([[look.say(TITLE, "title"), right]], [0.5 * TEXT_WIDTH] * 2)
+    top = plain_table([[look.fixed_text(TITLE, "title"), right]], [0.5 * TEXT_WIDTH] * 2)
     top.setStyle(
         [
             ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),

@@ -129,7 +129,7 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
     counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
     verdict = content.results.verdict
     results = plural_message("report.characteristics", "{n:,} characteristic", "{n:,} characteristics", n=len(found))
-    headline: list[Flowable] = [look.say("Result", "label"), look.text(words(results), "result")]
+    headline: list[Flowable] = [look.fixed_text("Result", "label"), look.text(words(results), "result")]
     if found and found[0].verdict:
         title = words("{name}: the worst of {all}", name=headed_name(found[0], words), all=words(results))
         headline = [look.text(title, "label"), _value(look, found[0])]
@@ -149,12 +149,12 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
 
 def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
     parts: list[Flowable] = [
-        look.say("Point cloud", "label"),
+        look.fixed_text("Point cloud", "label"),
         look.text(look.words(points_counted(len(content.cloud))), "result"),
     ]
     _points, *rest = for_reader(content.scan_facts, Reader.TECHNICIAN)
     facts = texts_by_name(look, rest)
-    sentence = look.say(
+    sentence = look.fixed_text(
         "No pair of parallel faces was evaluated, so there is no thickness and no verdict: this report is of the cloud."
     )
     return [*parts, Spacer(0, 2.5 * mm), *_facts(look, facts, width), Spacer(0, 2 * mm), sentence]
@@ -196,7 +196,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
     title = look.link(name, key, "small_strong") if key else look.text(name, "small_strong")
     below: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
     if letter := content.datums.get(content.features.get(one.name, "")):
-        below.insert(0, look.say("Datum {letter}", "rule", letter=letter))
+        below.insert(0, look.fixed_text("Datum {letter}", "rule", letter=letter))
     if frame := content.control_frames.get(one.name):
         below.insert(0, ControlFrameMark(look, frame))
     decided = f"{SIGNS[one.verdict]} {verdict_title(one.verdict, words)}"

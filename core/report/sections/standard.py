@@ -112,7 +112,7 @@ def _compared(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """What a comparison with another surface came to."""
     if not content.compared:
         return []
-    return [Spacer(0, 3 * mm), look.say("Comparison", "label"), figures(look, content.compared, columns=4)]
+    return [Spacer(0, 3 * mm), look.fixed_text("Comparison", "label"), figures(look, content.compared, columns=4)]
 
 
 def _with_budget(content: ReportContent) -> tuple[int, ...]:
@@ -136,7 +136,7 @@ def _not_covered(look: ReportLook, content: ReportContent) -> list[Flowable]:
 def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     words = look.words
     if "surface" not in pictures:
-        nothing = look.say("No point was measured, so there is no surface to show.")
+        nothing = look.fixed_text("No point was measured, so there is no surface to show.")
         return [section(look, "surface", "Measured surface", [nothing])]
     drawn = len(content.mesh.triangles)
     if drawn:
@@ -225,7 +225,7 @@ def _sections(look: ReportLook, content: ReportContent, pictures: Pictures, limi
 def _points(look: ReportLook, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     if "points" not in pictures:
         return []
-    caption = look.say(
+    caption = look.fixed_text(
         "Where in the picture the points lie that each result rests on; grey: other points of the cloud.", "caption"
     )
     body = [Picture(pictures["points"], limits.picture_scale), caption]
@@ -237,9 +237,9 @@ def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         return []
     picture = Picture(pictures["maps"], limits.picture_scale)
     if content.gauge is None:
-        caption = look.say("Mean of the points in each cell of the picture; grey: no point.", "caption")
+        caption = look.fixed_text("Mean of the points in each cell of the picture; grey: no point.", "caption")
         return [section(look, "maps", "Depth and its uncertainty over the picture", [picture, caption])]
-    caption = look.say(
+    caption = look.fixed_text(
         "Distance of the points from the fitted plane, mean per cell, towards the camera positive (orange); grey: no "
         "point. Along: to the right in the picture; across: upwards in the picture. Spread: share of the points per "
         "bin, what lies beyond counted in the last one.",
@@ -305,7 +305,7 @@ def _repeats(look: ReportLook, content: ReportContent, pictures: Pictures, limit
     if not first:
         return []
     if "repeats" in pictures:
-        caption = look.say("Thickness with ±U of each scan, in the order of measuring.", "caption")
+        caption = look.fixed_text("Thickness with ±U of each scan, in the order of measuring.", "caption")
         first += [Spacer(0, 2 * mm), Picture(pictures["repeats"], limits.picture_scale), caption]
     head_part = section(look, "repeats", "Repeated scans", first)
     return [head_part, Spacer(0, 2 * mm), *repeats_table(look, content, limits.repeats)]
@@ -325,7 +325,7 @@ def signatures(look: ReportLook, content: ReportContent) -> list[Flowable]:
     lines: list[Flowable] = []
     for start in range(0, len(names), FACTS_PER_ROW):
         row = names[start : start + FACTS_PER_ROW]
-        cells = [[look.text(name, "small_strong"), look.say("Date, signature", "label")] for name in row]
+        cells = [[look.text(name, "small_strong"), look.fixed_text("Date, signature", "label")] for name in row]
         columns: list[list[Flowable]] = []
         for cell in cells:
             columns += [cell, []]
