@@ -8,7 +8,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from workbench.views.layouts import enable, say
+from workbench.views.layouts import enable, set_text
 
 _WIDEST, _MARGIN = 440, 12
 """Pixels: the widest that the sentence gets, and what is left free beside it at least."""
@@ -33,12 +33,12 @@ class EmptyState(QWidget):
         column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
         column.addStretch(1)
 
-    def say(
+    def set_text(
         self, message: str, button: str = "", on_button: Callable[[], None] | None = None, why_not: str = ""
     ) -> None:
         """Show a sentence; the button only if it is named, and disabled while `why_not` gives the reason."""
         self._label.setText(message)
-        say(self.button, button)
+        set_text(self.button, button)
         enable(self.button, why_not, "")
         self._on_button = on_button
 

@@ -252,7 +252,7 @@ class FewLines(Sentence):
         super().__init__()
         self.setObjectName("muted")
 
-    def say(self, text: str, *, steady: bool) -> None:
+    def set_text(self, text: str, *, steady: bool) -> None:
         """Show a text."""
         self._steady = steady
         self.setText(text)
@@ -311,14 +311,14 @@ def alarm() -> Sentence:
     return label
 
 
-def say_notes(notes: Iterable[Message], grave: QLabel, others: QLabel) -> None:
+def set_notes(notes: Iterable[Message], grave: QLabel, others: QLabel) -> None:
     """Show notes, the grave ones in the label that is shown first."""
     told = gravest_first(notes)
     for label, wanted in ((grave, True), (others, False)):
-        say(label, "\n".join(text_of(note) for note in told if is_grave(note) is wanted))
+        set_text(label, "\n".join(text_of(note) for note in told if is_grave(note) is wanted))
 
 
-def say(label: QLabel | QAbstractButton, text: str) -> None:
+def set_text(label: QLabel | QAbstractButton, text: str) -> None:
     """Show a text in a label, or hide the label where it is empty."""
     label.setText(text)
     label.setVisible(bool(text))

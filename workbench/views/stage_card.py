@@ -74,7 +74,7 @@ class StageCard(QFrame):
             Whose sign stands before the words; "" for none.
         """
         self.title.setText(title)
-        self.words.say(words, steady=steady)
+        self.words.set_text(words, steady=steady)
         if verdict:
             symbol, colour = VERDICT_ICONS[verdict]
             self.sign.show_icon(symbol, colour)

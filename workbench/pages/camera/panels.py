@@ -13,7 +13,7 @@ from workbench.pages.camera.presenter import CameraPresenter
 from workbench.pages.setting_fields import add_settings
 from workbench.pages.words import show_facts
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import muted, say
+from workbench.views.layouts import muted, set_text
 from workbench.views.lists.value_rows import ValueRows
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -71,7 +71,7 @@ class CameraResult(Result):
         work = self._presenter.work
         calibration = work.calibration
         show_facts(self.rows, words.facts(calibration, work.judgement))
-        say(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
+        set_text(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
         return calibration is not None
 
 

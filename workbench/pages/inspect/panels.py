@@ -38,7 +38,7 @@ from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say, say_notes
+from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, set_notes, set_text
 from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 from workbench.views.lists.value_rows import ValueRows, Verdict
 
@@ -240,9 +240,9 @@ class ResultPanel(QWidget):
         show_facts(self.rows, gauge_facts(gauge))
         self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
         thickness = thickness_characteristic(gauge)
-        say(self.largest, why_so_large(thickness))
+        set_text(self.largest, why_so_large(thickness))
         show_facts(self.budget, budget_facts(thickness))
-        say_notes(gauge.notes, self.alarm, self.notes)
+        set_notes(gauge.notes, self.alarm, self.notes)
         self.notes_title.setVisible(bool(self.notes.text()))
 
     def _show_verdict(self, gauge: GaugeResult, outdated: bool) -> None:

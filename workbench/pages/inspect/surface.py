@@ -250,7 +250,7 @@ class SurfaceTab(QWidget):
         p = self._presenter
         if p.stage is Stage.NO_SCAN:
             said = tr("There is no scan yet. Scan the part, then look at its surface here.")
-            self.empty.say(said, tr("Go to Scan"), lambda: p.go_to.emit("scan"))
+            self.empty.set_text(said, tr("Go to Scan"), lambda: p.go_to.emit("scan"))
         self._show_empty(p.stage is Stage.NO_SCAN)
         self._later.stop()
         self._drawn = self._cloud = self._mesh = self._cut = ()

@@ -20,7 +20,7 @@ from workbench.pages.setting_fields import add_rig_settings, add_settings, set_s
 from workbench.pages.words import show_facts
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
-from workbench.views.layouts import enable, heading, in_column, muted, say
+from workbench.views.layouts import enable, heading, in_column, muted, set_text
 from workbench.views.lists.value_rows import ValueRows
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
@@ -144,9 +144,9 @@ class PlanesResult(Result):
         work = self._presenter.work
         calibration = work.calibration
         show_facts(self.rows, planes_facts(calibration) if calibration is not None else ())
-        say(self.verdict, words.verdict_sentence(calibration))
-        say(self.notes, words.notes(calibration))
+        set_text(self.verdict, words.verdict_sentence(calibration))
+        set_text(self.notes, words.notes(calibration))
         why = left_out(calibration.poses if calibration is not None else work.poses or ())
-        say(self.left_out, "\n".join(text_of(one.line()) for one in why))
+        set_text(self.left_out, "\n".join(text_of(one.line()) for one in why))
         self._left_out_heading.setVisible(bool(why))
         return calibration is not None or bool(why)

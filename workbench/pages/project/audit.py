@@ -15,7 +15,7 @@ from core.messages import visible
 from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
-from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen, say
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen, set_text
 from workbench.work import jobs
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class AuditWindow(QDialog):
         self.setWindowTitle(tr("Audit trail"))
         resize_on_screen(self, 820, 560)
         self.state, self.found, self.entries = muted(), muted(), QPlainTextEdit()
-        say(self.found, "")
+        set_text(self.found, "")
         self.entries.setReadOnly(True)
         self.entries.setAccessibleName(tr("Entries of the audit trail"))
         self.remark = QPushButton(tr("Add a remark …"))
@@ -82,7 +82,7 @@ class AuditWindow(QDialog):
         """Compare every file that has a hash, as `trisect verify` does."""
         reading = tr("The files are being compared.")
         enable(self.verify, reading, "")
-        say(self.found, reading)
+        set_text(self.found, reading)
         task = self._bench.quick.run(
             self,
             jobs.VERIFY,
@@ -90,7 +90,7 @@ class AuditWindow(QDialog):
             label=tr("Comparing the files"),
             on_done=self._verified,
             on_failed=lambda problem: self.found.setText(text_of(problem)),
-            on_cancelled=lambda: say(self.found, ""),
+            on_cancelled=lambda: set_text(self.found, ""),
         )
         task.ended.connect(lambda: enable(self.verify, "", tr("Compare them again")))
 

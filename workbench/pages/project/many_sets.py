@@ -28,7 +28,7 @@ from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, UpAndDown, enable, in_column, in_row, muted, resize_on_screen, say
+from workbench.views.layouts import STRETCH, UpAndDown, enable, in_column, in_row, muted, resize_on_screen, set_text
 from workbench.views.lists.data_table import DataTable
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -179,7 +179,7 @@ class ManySetsWindow(QWidget):
 
     def _say(self, problem: str) -> None:
         """Say in this window what could not be done, or nothing."""
-        say(self.problem, problem)
+        set_text(self.problem, problem)
 
     def _arrange(self) -> None:
         margins = (8, 8, 8, 8)

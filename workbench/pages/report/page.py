@@ -19,7 +19,7 @@ from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import Choice
-from workbench.views.layouts import enable, muted, say
+from workbench.views.layouts import enable, muted, set_text
 from workbench.views.pages.page_scroll import PageScroll
 from workbench.views.stage_card import CardButton, StageCard
 
@@ -53,7 +53,7 @@ class ReportPage(StepPage):
     def refresh(self) -> None:
         p = self.presenter
         self._show_stage(p.stage)
-        say(self.warning, p.warning())
+        set_text(self.warning, p.warning())
         for name, title, shown in p.sections():
             box, why = self.boxes[name], p.empty_section(name)
             box.setChecked(shown)

@@ -21,7 +21,7 @@ from workbench.views import ask
 from workbench.views.common import Choice, dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, enable, heading, in_column, in_row, muted, resize_on_screen, say
+from workbench.views.layouts import STRETCH, enable, heading, in_column, in_row, muted, resize_on_screen, set_text
 from workbench.views.lists.data_table import DataTable
 
 LONGEST_ID = 60
@@ -92,7 +92,7 @@ class ArtefactDialog(QDialog):
             self.table.set_current_row(self._ids.index(wanted))
             self._wanted = ""
         dress(self.problem, f"color: {shades().bad};")
-        say(self.problem, self._artefacts.problem)
+        set_text(self.problem, self._artefacts.problem)
         self._show_chosen()
 
     def _arrange(self) -> None:
@@ -157,7 +157,7 @@ class ArtefactDialog(QDialog):
             )
         else:
             said = ""
-        say(self.said, said)
+        set_text(self.said, said)
 
     def _show_lengths(self, one: Artefact | None) -> None:
         """What the chosen artefact may be compared with, where that is to be chosen."""

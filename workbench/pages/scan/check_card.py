@@ -32,7 +32,7 @@ from workbench.views import ask
 from workbench.views.colours import Level
 from workbench.views.common import Choice, IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
-from workbench.views.layouts import enable, heading, in_column, in_row, mark_primary, muted, rename, say
+from workbench.views.layouts import enable, heading, in_column, in_row, mark_primary, muted, rename, set_text
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRows
 from workbench.views.plots.control import ControlPlot
 
@@ -91,7 +91,7 @@ class CheckCard(QFrame):
         self.sign.setAccessibleName(word)
         self.word.setText(word)
         dress(self.word, f"color: {getattr(shades(), colour)}; font-weight: 600;")
-        say(self.sentence, sentence)
+        set_text(self.sentence, sentence)
         shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
         past = check.past if shown is not None else None
         limits = check.history.chart(past) if check.history is not None and past is not None else None

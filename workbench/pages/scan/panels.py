@@ -25,7 +25,7 @@ from workbench.pages.whole import EVERYTHING
 from workbench.pages.words import count, show_facts, sigma
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import alarm, heading, in_column, muted, say, say_notes
+from workbench.views.layouts import alarm, heading, in_column, muted, set_notes, set_text
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
@@ -197,11 +197,11 @@ class ResultPanel(QWidget):
             self._shown = look
             show_facts(self.rows, words.facts(look))
             lines = [text_of(one.line()) for one in left_out(look.frames)] if look is not None else []
-            say(self.reasons, "\n".join(lines))
+            set_text(self.reasons, "\n".join(lines))
             self._why.setVisible(bool(lines))
         said = (*look.notes, *look.problems) if look is not None else ()
         no_gauge = self._presenter.run.no_gauge
-        say_notes((*said, *([no_gauge] if no_gauge is not None else [])), self.alarm, self.notes)
+        set_notes((*said, *([no_gauge] if no_gauge is not None else [])), self.alarm, self.notes)
 
 
 class RunningPanel(QWidget):

@@ -23,7 +23,7 @@ from workbench.language import text_of, tr
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import Choice, SpinBox
-from workbench.views.layouts import enable, in_column, in_row, say
+from workbench.views.layouts import enable, in_column, in_row, set_text
 
 
 class DeviceField(QWidget):
@@ -220,7 +220,7 @@ class SourceForm(QWidget):
         self._form.setRowVisible(self.files, live.step == "scan")
         self.files.setCurrentIndex(max(self.files.findData(settings.ending), 0))
         for label, sentence in ((self.missing, settings.missing), (self.complaint, settings.complaint)):
-            say(label, sentence)
+            set_text(label, sentence)
 
     def _numbers(self) -> dict[str, NumberField]:
         return {"exposure_ms": self.exposure, "gain_db": self.gain, "rate_hz": self.rate}

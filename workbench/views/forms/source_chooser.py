@@ -23,7 +23,7 @@ from workbench.views.layouts import in_column, in_row
 
 
 class NextAction(NamedTuple):
-    """Button of the next action where there are no pictures yet, as `EmptyState.say` takes it."""
+    """Button of the next action where there are no pictures yet, as `EmptyState.set_text` takes it."""
 
     text: str
     do: Callable[[], None]

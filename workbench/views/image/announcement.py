@@ -32,7 +32,7 @@ class Announcement(QLabel):
         )
         self.hide()
 
-    def say(self, sentence: str) -> None:
+    def set_text(self, sentence: str) -> None:
         """Show a sentence, or "" to show none any more."""
         stood_ms = 1000 * (time.monotonic() - self._since)
         if sentence == self.text() and not self.isHidden():

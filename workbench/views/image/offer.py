@@ -30,7 +30,7 @@ class Offer(QFrame):
         self.setStyleSheet("#offer { background: rgba(12, 16, 20, 215); border-radius: 6px; }")
         self.hide()
 
-    def say(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
+    def set_offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
         """Offer `do` by a sentence and a button; "" ends the offer."""
         self._do = do
         self.setVisible(bool(sentence))

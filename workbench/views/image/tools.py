@@ -54,7 +54,7 @@ class ToolStrip(QFrame):
         self._row.insertWidget(self._place_for_tools, widget)
         self._place_for_tools += 1
 
-    def say_layers(self, titles: Sequence[str]) -> None:
+    def set_layers_tip(self, titles: Sequence[str]) -> None:
         """List the layers in the tip of their menu; nothing where the legend lists them."""
         self.layers.setToolTip("\n".join((self.layers.accessibleName(), *titles)))
 

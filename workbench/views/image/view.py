@@ -136,17 +136,17 @@ class ImageView(QWidget):
         self._strip.readout.clear()
         self._strip.zoom.clear()
         self._strip.setEnabled(False)
-        self._empty.say(message, button, on_button, why_not)
+        self._empty.set_text(message, button, on_button, why_not)
         self._empty.show()
         self._arrange()
 
     def announce(self, sentence: str) -> None:
         """Show a sentence large in the picture, for two seconds at least; "": none, nor beside an offer."""
-        self._announcement.say(sentence if self.offered.isHidden() else "")
+        self._announcement.set_text(sentence if self.offered.isHidden() else "")
 
     def offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
         """Offer an action over the picture, by a sentence and a button; "" ends the offer."""
-        self.offered.say(sentence, button, do)
+        self.offered.set_offer(sentence, button, do)
 
     @property
     def announced(self) -> str:
@@ -496,7 +496,7 @@ class ImageView(QWidget):
         covered = wanted.width() * wanted.height() / max(room.width() * room.height(), 1)
         fits = covered <= LEGEND_SHARE and wanted.height() < room.height()
         self._legend.setVisible(fits and bool(self._legend.titles) and self._layers_menu.legend_shown)
-        self._strip.say_layers(() if fits else self._legend.titles)
+        self._strip.set_layers_tip(() if fits else self._legend.titles)
         self._legend.setGeometry(self._corner_for(wanted))
 
     def _corner_for(self, wanted: QSize) -> QRect:

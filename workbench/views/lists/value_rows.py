@@ -14,7 +14,7 @@ from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress, dress_edged, grade_words
-from workbench.views.layouts import Sentence, in_column, in_row, say
+from workbench.views.layouts import Sentence, in_column, in_row, set_text
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
     "good": ("mdi6.check-circle-outline", "good"),
@@ -144,7 +144,7 @@ class Verdict(QFrame):
     def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
         """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
         self._kind = kind
-        say(self._detail, detail)
+        set_text(self._detail, detail)
         self._show()
 
     @property

@@ -25,7 +25,7 @@ from workbench.language import tr
 from workbench.theme import icon, shades
 from workbench.views.common import dress, inner_edge
 from workbench.views.empty_state import EmptyState
-from workbench.views.layouts import STRETCH, in_column, in_row, say
+from workbench.views.layouts import STRETCH, in_column, in_row, set_text
 
 DIM = 0.45
 """Opacity of a page that is no longer what it should say."""
@@ -150,12 +150,12 @@ class PageScroll(QWidget):
 
     def set_message(self, text: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
         """Set the sentence shown where there are no pages, and a button if something can be done about it."""
-        self._empty.say(text, button, on_button)
+        self._empty.set_text(text, button, on_button)
 
     def set_note(self, text: str) -> None:
         """Show over the pages why they are out of date, and dim them; "" when they are not."""
         if text != self._note.text() or bool(text) == self._note.isHidden():
-            say(self._note, text)
+            set_text(self._note, text)
             self._place_note()
             for sheet in self.sheets:
                 sheet.set_dim(bool(text))

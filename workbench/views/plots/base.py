@@ -117,7 +117,7 @@ class Plot(QWidget):
         if self._canvas is not None:
             self._item.clear()
             self._show_axes(False)
-        self._empty.say(message)
+        self._empty.set_text(message)
         self._empty.show()
 
     @property

@@ -18,7 +18,7 @@ from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import in_column, muted, say
+from workbench.views.layouts import in_column, muted, set_text
 
 LONGEST = 5000.0
 """The longest master in mm that can be entered."""
@@ -67,7 +67,7 @@ class ConditionsPanel(QWidget):
         for form in self.forms.values():
             form.set_values(values)
         for group, label in self.complaints.items():
-            say(label, conditions.complaint(group))
+            set_text(label, conditions.complaint(group))
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

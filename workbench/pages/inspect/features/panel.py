@@ -35,7 +35,7 @@ from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
-from workbench.views.layouts import FewLines, enable, in_column, in_row, muted, say
+from workbench.views.layouts import FewLines, enable, in_column, in_row, muted, set_text
 from workbench.views.lists.tree_model import Cell, TreeList, TreeRow
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -118,7 +118,7 @@ class FeaturesPanel(QWidget):
         self.templates.refresh()
         self.state.setText(self._sentence())
         shown = features.shown
-        say(self.notes, "" if shown is None or features.problem else "\n".join(map(text_of, shown.notes)))
+        set_text(self.notes, "" if shown is None or features.problem else "\n".join(map(text_of, shown.notes)))
         self.form.refresh()
 
     # ---- the list

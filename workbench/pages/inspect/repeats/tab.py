@@ -17,7 +17,18 @@ from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.words import show_facts
 from workbench.theme import icon
-from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, heading, in_column, in_row, muted, say
+from workbench.views.layouts import (
+    STRETCH,
+    Folding,
+    Tabs,
+    UpAndDown,
+    enable,
+    heading,
+    in_column,
+    in_row,
+    muted,
+    set_text,
+)
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
@@ -84,7 +95,7 @@ class RepeatsTab(QWidget):
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
         self._show_type1()
-        say(self.words, self._sentence())
+        set_text(self.words, self._sentence())
         if wanted == self._shown:
             return
         self._shown = wanted
@@ -130,7 +141,7 @@ class RepeatsTab(QWidget):
         self.type1_title.setVisible(study is not None)
         show_facts(self.type1, self._of_type1())
         said = repeats.no_type1 if study is None else "\n".join(map(text_of, study.notes))
-        say(self.type1_words, said if repeats.all else "")
+        set_text(self.type1_words, said if repeats.all else "")
 
     def _show_buttons(self) -> None:
         repeats = self._repeats

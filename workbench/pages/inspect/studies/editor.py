@@ -13,7 +13,7 @@ from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column, in_row, muted, say
+from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column, in_row, muted, set_text
 
 FORM_WIDTH, NARROW_WIDTH = 300, 250
 """Pixels of the fields, and of a single one; the table beside them takes the rest."""
@@ -76,7 +76,7 @@ class StudyEditor(QWidget):
         for kind, form in self.forms.items():
             form.setVisible(kind == draft.kind)
         self.forms[draft.kind].set_values(draft.values)
-        say(self.problem, studies.problem)
+        set_text(self.problem, studies.problem)
         self._show_buttons(draft)
 
     def _show_buttons(self, draft: Draft) -> None:
