@@ -16,11 +16,11 @@ from core.calibrate.camera.missing import (
     Series,
     ViewGeometry,
     missing_from,
-    stand_in_camera,
+    typical_camera,
     view_geometry,
     what_is_missing,
 )
-from core.calibrate.camera.wanted_view import wanted_view
+from core.calibrate.camera.wanted_view import next_view_outline
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
@@ -96,7 +96,7 @@ class CaptureJudge:
     ) -> None:
         self._series = series
         self._image_size, self._limits = image_size, limits or CaptureLimits()
-        self._camera = camera or stand_in_camera(image_size)
+        self._camera = camera or typical_camera(image_size)
         self._rows = max(1, round(MAP_COLUMNS * image_size[1] / image_size[0]))
         self._recent: deque[tuple[float, TargetView]] = deque()
         self._sharpest = float("inf")
@@ -143,13 +143,13 @@ class CaptureJudge:
         already_there = self._already_there(view_geometry(view, self._camera), self._cells(view.uv))
         return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there, of_no_use=True)
 
-    def know(self, views: Iterable[TargetView]) -> None:
+    def add_earlier(self, views: Iterable[TargetView]) -> None:
         """Add the views of an earlier recording that is being continued; they cannot be deleted here."""
         for view in views:
             nameless = TargetView(view.points, view.uv, view.sigma, "")
             self._taken.append((nameless, view_geometry(nameless, self._camera)))
 
-    def taken(self, view: TargetView, time_s: float) -> None:
+    def record_taken(self, view: TargetView, time_s: float) -> None:
         """Record that the view was taken, on this judgement or by hand."""
         self._taken.append((view, view_geometry(view, self._camera)))
         self._taken_at = time_s
@@ -162,7 +162,7 @@ class CaptureJudge:
         """Advise on what the views taken so far lack."""
         return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size, self._series)
 
-    def wanted(self) -> Array | None:
+    def next_outline(self) -> Array | None:
         """Outline (5, 2) in pixels, closed, of the target where it would add most; None if nothing is missing.
 
         Nor is anything wanted before a first view was taken.
@@ -180,7 +180,7 @@ class CaptureJudge:
             return float(np.mean(cells & ~covered)) if self._series.everywhere else 0.0
 
         middle = None if self._series.everywhere else np.mean([view.uv.mean(axis=0) for view in self.views], axis=0)
-        return wanted_view(np.array([points.min(axis=0), points.max(axis=0)]), self._camera, known, adds, middle)
+        return next_view_outline(np.array([points.min(axis=0), points.max(axis=0)]), self._camera, known, adds, middle)
 
     def _just_taken(self, time_s: float) -> bool:
         return 0 <= time_s - self._taken_at < _SHOWN_FOR_S

@@ -82,7 +82,7 @@ class ViewGeometry:
         return float(np.arctan2(sine, abs(self.normal @ other.normal)))
 
 
-def stand_in_camera(image_size: tuple[int, int]) -> Camera:
+def typical_camera(image_size: tuple[int, int]) -> Camera:
     """Make a typical camera, to estimate tilts as long as the true one is not known."""
     width, height = image_size
     focal = _USUAL_FOCAL * max(width, height)
@@ -108,7 +108,7 @@ def what_is_missing(
 
     `camera` tells the tilts; without it, a usual one does (they come out right within some degrees).
     """
-    camera = camera or stand_in_camera(image_size)
+    camera = camera or typical_camera(image_size)
     return missing_from(views, [view_geometry(view, camera) for view in views], image_size)
 
 

@@ -28,7 +28,7 @@ _FOR_TILT, _FOR_DISTANCE = 0.5, 0.2
 """What these are worth; a whole picture newly covered is worth 1."""
 
 
-def wanted_view(
+def next_view_outline(
     extent: Array,
     camera: Camera,
     taken: Sequence[ViewGeometry],

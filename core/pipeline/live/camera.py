@@ -69,8 +69,8 @@ class LiveCamera:
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._context.request.camera)
-            self._judge.know(self._context.request.there)
-            self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
+            self._judge.add_earlier(self._context.request.there)
+            self._missing, self._wanted = self._judge.missing(), self._judge.next_outline()
         self._context.worker.start(find_view, frame, self._target, self._context.request.camera)
 
     def poll(self) -> Frame | None:
@@ -123,7 +123,7 @@ class LiveCamera:
                 self._target = target
             case Discard(name) if self._judge is not None and self._context.put_aside(name):
                 self._judge.forget(name)
-                self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
+                self._missing, self._wanted = self._judge.missing(), self._judge.next_outline()
                 self._context.recorded -= 1
 
     def finish(self) -> None:
@@ -134,8 +134,8 @@ class LiveCamera:
         self._number += 1
         self._context.write(name, frame.picture, frame)
         self._context.recorded += 1
-        judge.taken(named(view, name), frame.time_s)
-        self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.wanted()
+        judge.record_taken(named(view, name), frame.time_s)
+        self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.next_outline()
         self._context.took(name, frame.picture)
         self._context.dealt_with(frame)
 

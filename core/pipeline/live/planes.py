@@ -95,8 +95,8 @@ class LivePlanes:
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
-            self._judge.know(self._context.request.there)
-            self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
+            self._judge.add_earlier(self._context.request.there)
+            self._missing, self._wanted = self._judge.missing(), self._judge.next_outline()
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines
             self._context.worker.start(find_pose, frame, *known, self._seen_at)
@@ -152,7 +152,7 @@ class LivePlanes:
                 self._auto = on
             case Discard(name) if self._judge is not None and self._context.put_aside(name, f"{name}_off"):
                 self._judge.forget(name)
-                self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
+                self._missing, self._wanted = self._judge.missing(), self._judge.next_outline()
                 self._context.recorded -= 1
 
     def finish(self) -> None:
@@ -246,8 +246,8 @@ class LivePlanes:
                 self._context.write(f"{name}_off", off.picture, off)
             self._number += 1
             self._context.recorded += 1
-            judge.taken(named(pending.view, name), pending.on.time_s)
-            self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.wanted()
+            judge.record_taken(named(pending.view, name), pending.on.time_s)
+            self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.next_outline()
             self._context.took(name, pending.on.picture)
             if self._checks and self._context.recorded >= CHECK_POSES:
                 raise Ended

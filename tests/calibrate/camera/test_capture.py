@@ -35,7 +35,7 @@ class Bench:
         return verdict
 
     def takes(self, *args, **kwargs):
-        self.judge.taken(view(*args, **kwargs), self.now)
+        self.judge.record_taken(view(*args, **kwargs), self.now)
         self.now += 2.0
 
 
@@ -95,7 +95,7 @@ def test_tilts_are_told_apart_without_a_calibrated_camera():
 def test_a_view_just_taken_is_said_for_a_second():
     bench = Bench()
     assert bench.sees().take
-    bench.judge.taken(view(), bench.now)
+    bench.judge.record_taken(view(), bench.now)
     assert str(bench.sees(tilt_deg=(25.0, 0.0)).sentence) == "Taken."
 
 

@@ -38,24 +38,24 @@ def held_at(outline) -> TargetView:
 @pytest.mark.parametrize("series", [CAMERA_VIEWS, PLANE_POSES], ids=["camera", "planes"])
 def test_a_series_that_follows_the_wanted_views_lacks_nothing_at_its_end(series):
     judge = CaptureJudge(SIZE, TRUTH, series=series)
-    judge.taken(first_view(), 0.0)
+    judge.record_taken(first_view(), 0.0)
     for number in range(series.enough + 2):
-        wanted = judge.wanted()
+        wanted = judge.next_outline()
         if wanted is None:
             break
         view = held_at(wanted)
         still = [judge.judge(view, 1.1, 10.0 * (number + 1) + step) for step in (0.0, 0.15, 0.3)]
         assert still[-1].take, "what is wanted is taken"
-        judge.taken(view, 10.0 * (number + 1) + 0.3)
+        judge.record_taken(view, 10.0 * (number + 1) + 0.3)
     assert judge.missing() == ()
-    assert judge.wanted() is None
+    assert judge.next_outline() is None
     assert len(judge.views) <= series.enough + 2
 
 
 def test_a_wanted_view_lies_in_the_picture_whole_and_is_a_closed_outline():
     judge = CaptureJudge(SIZE, TRUTH)
-    judge.taken(first_view(), 0.0)
-    wanted = judge.wanted()
+    judge.record_taken(first_view(), 0.0)
+    wanted = judge.next_outline()
     assert wanted.shape == (5, 2)
     assert np.array_equal(wanted[0], wanted[-1])
     assert np.all(wanted > 0)
@@ -63,11 +63,11 @@ def test_a_wanted_view_lies_in_the_picture_whole_and_is_a_closed_outline():
 
 
 def test_nothing_is_wanted_before_the_target_is_known():
-    assert CaptureJudge(SIZE, TRUTH).wanted() is None
+    assert CaptureJudge(SIZE, TRUTH).next_outline() is None
 
 
 def test_the_plane_target_is_wanted_where_it_was_seen_under_the_fan():
     judge = CaptureJudge(SIZE, TRUTH, series=PLANE_POSES)
     view = first_view()
-    judge.taken(view, 0.0)
-    assert np.linalg.norm(judge.wanted()[:4].mean(axis=0) - view.uv.mean(axis=0)) < 0.05 * SIZE[0]
+    judge.record_taken(view, 0.0)
+    assert np.linalg.norm(judge.next_outline()[:4].mean(axis=0) - view.uv.mean(axis=0)) < 0.05 * SIZE[0]
