@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape, size_assumed
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.findings.table import note_of
 from core.image.exclusion import Excludable, Exclusion, Reason
 from core.image.stripes.centreline import Centreline
@@ -225,7 +225,7 @@ class FanCalibration:
     converged: bool | None = None
     points_off_alike: bool | None = None
     flatness_assumed: bool | None = None
-    taken: Taken | None = None
+    taken: Acquisition | None = None
     stripes: tuple[tuple[Centreline, ...], ...] = ()
 
     @property

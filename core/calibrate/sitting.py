@@ -15,7 +15,7 @@ FRESH_HOURS = 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class Acquisition:
     """Camera of a recording, as its log names it, and the times of its first and last picture."""
 
     camera: str
@@ -23,7 +23,9 @@ class Taken:
     last: datetime
 
 
-def hours_of_sitting(planes: Taken | None, scan: Taken | None, fresh_hours: float | None = None) -> float | None:
+def hours_of_sitting(
+    planes: Acquisition | None, scan: Acquisition | None, fresh_hours: float | None = None
+) -> float | None:
     """Compute the hours from the first picture to the last if both are of one sitting.
 
     None if not, or if that is not known.

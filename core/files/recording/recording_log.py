@@ -17,7 +17,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from core.acquire.source import Frame
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.errors import InputError
 from core.files.atomic import cannot_write
 from core.files.csv_text import csv_text
@@ -138,7 +138,7 @@ class FolderLog:
         """Number of frames lost while the log was written."""
         return lost_frames(self.frames)
 
-    def taken(self, pictures: Sequence[Path]) -> Taken | None:
+    def acquisition(self, pictures: Sequence[Path]) -> Acquisition | None:
         """Find the camera and the times of these pictures; None where it is not known of each."""
         known = {frame.name: frame for frame in self.frames}
         frames = [known.get(path.name) for path in pictures]
@@ -146,7 +146,7 @@ class FolderLog:
         times = [frame.taken_at for frame in frames if frame is not None and frame.taken_at is not None]
         if not times or len(times) < len(frames) or len(cameras) > 1 or "" in cameras:
             return None
-        return Taken(cameras.pop(), min(times), max(times))
+        return Acquisition(cameras.pop(), min(times), max(times))
 
 
 def lost_frames(frames: Sequence[LoggedFrame]) -> int:

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from core import __version__
 from core.calibrate.board_shape import SUSPECTED_SCALE
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose, Readjustment
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import write_json
@@ -326,11 +326,11 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         converged=file.converged if file.tells_all_of_u else None,
         points_off_alike=file.points_off_alike,
         flatness_assumed=file.flatness_assumed,
-        taken=None if file.taken is None else Taken(file.taken.camera, file.taken.first, file.taken.last),
+        taken=None if file.taken is None else Acquisition(file.taken.camera, file.taken.first, file.taken.last),
     )
 
 
-def _taken_table(taken: Taken) -> dict[str, str]:
+def _taken_table(taken: Acquisition) -> dict[str, str]:
     return {"camera": taken.camera, "first": taken.first.isoformat(), "last": taken.last.isoformat()}
 
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from datetime import datetime
 
-from core.calibrate.sitting import Taken, hours_of_sitting
+from core.calibrate.sitting import Acquisition, hours_of_sitting
 from core.errors import InputError
 from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_planes, read_stored_poses
 from core.image.stripes.centreline import Centreline
@@ -31,7 +31,7 @@ class ScanChecks:
         self._context, self._previewer = context, previewer
         self._image_size = (0, 0)
         self._poses = calibrated_poses(context.request)
-        self._planes_taken = planes_taken(context.request)
+        self._planes_taken = planes_acquisition(context.request)
         self._stripe_px = stripe_width(piece for pose in self._poses for piece in pose)
         self._section: ChangedSection | Section = Section.SAME
         self._adviser = ExposureAdviser()
@@ -89,7 +89,7 @@ class ScanChecks:
             section=self._section,
         ).checks()
         now = datetime.now().astimezone()
-        here = Taken(self._context.camera, now, now)
+        here = Acquisition(self._context.camera, now, now)
         hours = hours_of_sitting(self._planes_taken, here, request.rig.validity.fresh_hours)
         checks = (*checks, rig_check(request.check, now, hours))
         if checks != self._told:
@@ -97,7 +97,7 @@ class ScanChecks:
             self._context.emit(LiveChecks(checks))
 
 
-def planes_taken(request: LiveRequest) -> Taken | None:
+def planes_acquisition(request: LiveRequest) -> Acquisition | None:
     """Find by which camera and when the fan's poses were recorded; None where that is not known."""
     if request.kept_planes is None or request.camera is None:
         return None

@@ -21,7 +21,13 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import check_agreement, measure_poses, plane_run_settings, solve_planes, when_taken
+from core.pipeline.steps.planes_step import (
+    check_agreement,
+    measure_poses,
+    plane_run_settings,
+    solve_planes,
+    with_acquisition,
+)
 from core.progress import Progress, silent
 from core.second_process import SecondProcess
 
@@ -108,7 +114,7 @@ def solve_poses(
     """
     camera = _accepted(folder, project)
     planes = solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
-    return when_taken(planes, project_set(folder, project))
+    return with_acquisition(planes, project_set(folder, project))
 
 
 def accept_planes(

@@ -11,7 +11,7 @@ import numpy as np
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_planes, read_stored_poses
 from core.files.project.data import Project
@@ -56,7 +56,7 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
 
 def accepted_calibration(
     folder: Path, project: Project, progress: Progress = silent
-) -> tuple[Camera | None, Fan | None, Taken | None]:
+) -> tuple[Camera | None, Fan | None, Acquisition | None]:
     """Read the accepted camera and fan, as far as there are any, and how the fan's pictures were taken, if known.
 
     InputError if one is damaged or they are not a pair.

@@ -18,7 +18,7 @@ from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
-from core.pipeline.steps.scan.pictures import at_sites, feature_options, of_whole, reference_picture, taken_frames
+from core.pipeline.steps.scan.pictures import at_sites, feature_options, of_whole, reference_picture, used_frames
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.extraction import (
     LOOK_AHEAD,
@@ -151,7 +151,7 @@ class _Recording:
         recording_set = pictures.recording_set
         reference = recording_set.reference
         written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
-        taken = tuple(taken_frames(recording_set, settings)) or recording_set.frames
+        taken = tuple(used_frames(recording_set, settings)) or recording_set.frames
         seen = taken if reference is None else taken[:LOOK_AHEAD]
         return cls(
             reference,

@@ -31,7 +31,7 @@ from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_erro
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
@@ -215,7 +215,7 @@ def since_calibration(
     recording_set: RecordingSet,
     calibration: Calibration,
     check: Sequence[PoseFeatures],
-    scanned: Taken | None,
+    scanned: Acquisition | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
 ) -> Change:
     """Estimate what may have changed since the calibration, as far as no picture excludes it.
@@ -310,7 +310,7 @@ def judged(
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
     *,
     at_scan: bool = False,
-    scanned: Taken | None = None,
+    scanned: Acquisition | None = None,
 ) -> Judged:
     """Judge the rig by the pictures of a set and the poses of its interim `check`.
 

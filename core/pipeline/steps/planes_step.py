@@ -74,7 +74,7 @@ def planes_step(
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, settings.accept_few_poses)
-        calibration = when_taken(calibration, work.recording_set)
+        calibration = with_acquisition(calibration, work.recording_set)
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
@@ -248,10 +248,10 @@ def solve_planes(
     return fit_fan(poses, camera, known, progress, excluded, adjusted)
 
 
-def when_taken(calibration: FanCalibration, recording_set: RecordingSet) -> FanCalibration:
+def with_acquisition(calibration: FanCalibration, recording_set: RecordingSet) -> FanCalibration:
     """Add to the calibration by which camera and when its pictures were taken, according to their log."""
     log = recording_set.log("planes")
-    taken = log.taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
+    taken = log.acquisition([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
     return replace(calibration, taken=taken, notes=(*calibration.notes, *log.notes))
 
 

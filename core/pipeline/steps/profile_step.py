@@ -27,7 +27,7 @@ from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, check_of_the_day, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan.judgement import SectionChange, facts_of, kept_poses_of, section_since
-from core.pipeline.steps.scan.pictures import feature_options, taken_frames
+from core.pipeline.steps.scan.pictures import feature_options, used_frames
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
@@ -99,7 +99,7 @@ def profile_step(
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
         check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
         logged = found.log("scan")
-        change = since_calibration(found, calibration, check, logged.taken(found.frames))
+        change = since_calibration(found, calibration, check, logged.acquisition(found.frames))
         section, kept = SectionChange(surely=None), kept_poses_of(work, calibration)
         seen: list[Profiles] = []
         steps, pictures = [], []
@@ -170,7 +170,7 @@ def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:
 def _pictures(recording_set: RecordingSet, settings: Options) -> list[Path]:
     if recording_set.reference is not None:
         return [recording_set.reference]
-    taken = taken_frames(recording_set, settings)
+    taken = used_frames(recording_set, settings)
     if taken:
         return taken
     raise InputError(

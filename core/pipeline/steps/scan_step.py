@@ -71,7 +71,9 @@ def scan_step(
             else check
         )
         logged = recording_set.log("scan")
-        change_by = partial(since_calibration, recording_set, calibration, checked, logged.taken(recording_set.frames))
+        change_by = partial(
+            since_calibration, recording_set, calibration, checked, logged.acquisition(recording_set.frames)
+        )
         kept = kept_poses_of(work, calibration)
         section, of_the_day = (
             section_since(calibration, kept.stripes, features.fan),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from core.calibrate.change import DEFAULT_STABILITY, Stability
 from core.calibrate.drift import KELVINS_WITHIN_DAY, NO_DRIFT, USUAL_KELVINS, Apart, apart, stability_after
 from core.calibrate.results import FanCalibration
-from core.calibrate.sitting import Taken, hours_of_sitting
+from core.calibrate.sitting import Acquisition, hours_of_sitting
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
@@ -64,7 +64,7 @@ class Sitting(NamedTuple):
     """How far the rig may have changed meanwhile."""
 
 
-def sitting_of(rig: Rig, fan: FanCalibration, scanned: Taken | None) -> Sitting | None:
+def sitting_of(rig: Rig, fan: FanCalibration, scanned: Acquisition | None) -> Sitting | None:
     """Find the sitting in which planes were calibrated and frames recorded; None where it is not one, or not known.
 
     What had changed before is in the planes' own pictures, as it is in those of a check of the day. `scanned` says by

@@ -187,7 +187,7 @@ def test_the_head_of_a_large_cameras_picture_is_read_without_a_warning(tmp_path)
 
 
 def when_taken(pictures):
-    return FolderLog.of(pictures[0].parent).taken(pictures)
+    return FolderLog.of(pictures[0].parent).acquisition(pictures)
 
 
 def recorded(folder, names, camera, at):
@@ -223,7 +223,7 @@ def test_of_a_replay_of_other_cameras_and_of_pictures_that_are_not_in_it_the_log
     (old / LOG).write_text("name,index,time_s,dropped\na.png,0,0.0,0\n")
     assert when_taken([old / "a.png"]) is None
     assert when_taken([tmp_path / "a.png"]) is None
-    assert FolderLog.of(tmp_path).taken([]) is None
+    assert FolderLog.of(tmp_path).acquisition([]) is None
     assert FolderLog.of(None) == FolderLog()
 
 
@@ -232,5 +232,5 @@ def test_a_time_without_its_zone_is_no_time(tmp_path):
     with pytest.raises(InputError, match="time zone"):
         read_log(tmp_path)
     log = FolderLog.of(tmp_path)
-    assert (log.frames, log.lost, log.taken([tmp_path / "a.png"])) == ((), 0, None)
+    assert (log.frames, log.lost, log.acquisition([tmp_path / "a.png"])) == ((), 0, None)
     assert [note.code for note in log.notes] == ["set.log_not_read"]

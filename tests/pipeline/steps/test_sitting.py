@@ -11,7 +11,7 @@ import pytest
 
 from core.calibrate.change import Evidence
 from core.calibrate.drift import Drift
-from core.calibrate.sitting import Taken, hours_of_sitting
+from core.calibrate.sitting import Acquisition, hours_of_sitting
 from core.files.recording import recording_log
 from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog
 from core.files.recording.recording_set import open_set
@@ -55,7 +55,7 @@ def work(unchanged, tmp_path):
 
 def change_of(work, of_measured=None):
     frames = work.recording_set.frames
-    scanned = work.recording_set.log("scan").taken(frames)
+    scanned = work.recording_set.log("scan").acquisition(frames)
     return since_calibration(work.recording_set, work.calibration(), (), scanned, of_measured)
 
 
@@ -139,7 +139,7 @@ def test_what_a_rig_is_stated_to_change_by_warmth_counts_within_a_sitting_too(wo
 def test_planes_remember_when_their_pictures_were_taken_and_by_which_camera(work):
     log(work.recording_set.planes[0].on.parent, NINE)
     planes_step(work)
-    assert work.calibration().fan.taken == Taken("one", NINE, NINE)
+    assert work.calibration().fan.taken == Acquisition("one", NINE, NINE)
 
 
 def test_a_damaged_log_is_read_once_told_once_and_keeps_nothing_from_being_measured(tiny_set, tiny_measured, tmp_path):
@@ -158,8 +158,8 @@ def test_a_damaged_log_is_read_once_told_once_and_keeps_nothing_from_being_measu
 
 
 def test_hours_are_from_the_first_picture_to_the_last_in_whatever_order():
-    planes = Taken("one", NINE, NINE + timedelta(minutes=30))
-    scan = Taken("one", TEN, TEN + timedelta(minutes=15))
+    planes = Acquisition("one", NINE, NINE + timedelta(minutes=30))
+    scan = Acquisition("one", TEN, TEN + timedelta(minutes=15))
     assert hours_of_sitting(planes, scan) == hours_of_sitting(scan, planes) == pytest.approx(1.25)
     assert hours_of_sitting(planes, None) is None
     assert hours_of_sitting(planes, replace(scan, camera="two")) is None

@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from core.calibrate.sitting import Taken, hours_of_sitting
+from core.calibrate.sitting import Acquisition, hours_of_sitting
 from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import changed, inputs_of
@@ -181,7 +181,7 @@ class ScanPresenter(StepPresenter):
         if self.check.stage is CheckStage.CHECKING or not scan_begins_live(self.model):
             return False
         now, planes = datetime.now().astimezone(), self.work.planes_taken
-        here = None if planes is None else Taken(planes.camera, now, now)
+        here = None if planes is None else Acquisition(planes.camera, now, now)
         hours = hours_of_sitting(planes, here, self.project.rig.validity.fresh_hours)
         return rig_check(self.check.valid, now, hours).state == "unknown"
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.model import Camera, Fan
 from core.scan.features.frames import FrameRecord
 from core.scan.preview.shown import ShownScan
@@ -41,7 +41,7 @@ class ScanWork(QObject):
         self.no_frames = ""
         self.camera: Camera | None = None
         self.fan: Fan | None = None
-        self.planes_taken: Taken | None = None
+        self.planes_taken: Acquisition | None = None
         self.calibrations_read = False
         self.look: ShownScan | None = None
         self._listed = self._calibrated = self._looked = self._thickness = ""
@@ -129,7 +129,7 @@ class ScanWork(QObject):
         if self.calibrations_read:
             return
 
-        def read(found: tuple[Camera | None, Fan | None, Taken | None]) -> None:
+        def read(found: tuple[Camera | None, Fan | None, Acquisition | None]) -> None:
             if self._calibrated == wanted and folder == self._model.folder:
                 self.camera, self.fan, self.planes_taken = found
                 self.calibrations_read = True

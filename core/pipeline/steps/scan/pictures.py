@@ -122,7 +122,7 @@ def look_at_scan(
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     mosaic = mosaic_of(reference.fan, reference.base)
     notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference, mosaic), *shine)
-    path = found.reference or taken_frames(found, settings)[0]
+    path = found.reference or used_frames(found, settings)[0]
     return SeenScan(lines, averaged, notes, faults, mosaic.too_fine, path, pictures.hashes, pictures.channels)
 
 
@@ -181,7 +181,7 @@ def _exposures(
 ) -> FurtherExposures | None:
     """Those of one number; None if there are none, or no picture of the fan alone."""
     recording_set = pictures.recording_set
-    shots = {recording_set.name_of(path): path for path in taken_frames(recording_set, settings)}
+    shots = {recording_set.name_of(path): path for path in used_frames(recording_set, settings)}
     shots = {name: path for name, path in shots.items() if number in recording_set.further.get(path, {})}
     if not shots:
         return None
@@ -226,7 +226,7 @@ def stream_frames(
     if coming is not None:
         yield from pictures.stream(coming, times)
         return
-    taken = pictures.stream(taken_frames(recording_set, settings), times)
+    taken = pictures.stream(used_frames(recording_set, settings), times)
     for path in recording_set.frames:
         name = recording_set.name_of(path)
         if name in settings.excluded:
@@ -239,7 +239,7 @@ def stream_frames(
 def require_frames(recording_set: RecordingSet, settings: Options) -> None:
     """Raise InputError if there are no frames, or all are left out by hand."""
     require_scan(recording_set)
-    if not taken_frames(recording_set, settings):
+    if not used_frames(recording_set, settings):
         raise InputError(
             Message(
                 "scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(recording_set.frames)
@@ -249,7 +249,7 @@ def require_frames(recording_set: RecordingSet, settings: Options) -> None:
         )
 
 
-def taken_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
+def used_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
     """List the frames that are not left out by hand."""
     return [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
 
@@ -270,7 +270,7 @@ def reference_picture(
         if camera is not None:
             check_size(recording_set.reference, reference.shape, camera)
         return reference, []
-    taken = taken_frames(recording_set, settings)
+    taken = used_frames(recording_set, settings)
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(pictures.stream(sample), progress, "reference", len(sample))
     readable = [picture for _, picture in stream if not isinstance(picture, Reason)]

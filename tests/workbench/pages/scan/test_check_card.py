@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.calibrate.results import CameraCalibration, FanCalibration, ProposedReadjustment, Readjustment
-from core.calibrate.sitting import Taken
+from core.calibrate.sitting import Acquisition
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
@@ -77,9 +77,9 @@ def test_where_nobody_has_checked_today_three_pictures_are_the_next_step_and_ask
     page.source.set_mode("live")
     qtbot.waitUntil(lambda: p.work.calibrations_read)
     assert primary(page) == ["Take 3 pictures"]
-    p.work.planes_taken = Taken("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=1)])
+    p.work.planes_taken = Acquisition("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=1)])
     assert primary(page) == ["Start live"], "planes of this sitting are as good as a check"
-    p.work.planes_taken = Taken("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=9)])
+    p.work.planes_taken = Acquisition("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=9)])
     assert primary(page) == ["Take 3 pictures"]
     p.check.use_folder(p.model.folder)
     assert primary(page) == ["Start live"], "it is being checked"
