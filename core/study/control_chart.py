@@ -39,7 +39,7 @@ class ControlChart:
         """Lower and upper limit."""
         return self.lower, self.upper
 
-    def holds(self, value: float) -> bool:
+    def contains(self, value: float) -> bool:
         """Whether a value lies within the limits; one that is not known does not."""
         return self.lower <= value <= self.upper
 

@@ -268,7 +268,7 @@ class RigHistory:
         An artefact is held to limits of its own history alone: its certificate is what E_n is for.
         """
         chart = self.chart(check)
-        if math.isnan(check.error_mm) or chart.holds(check.error_mm) or (check.artefact and not chart.own):
+        if math.isnan(check.error_mm) or chart.contains(check.error_mm) or (check.artefact and not chart.own):
             return None
         values = {"step_mm": check.step_mm, "error_mm": check.error_mm, "lower": chart.lower, "upper": chart.upper}
         if check.artefact:

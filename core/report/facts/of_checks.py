@@ -162,7 +162,7 @@ def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
             "Mean ± 3 standard deviations of the {n} checks before with these calibrations",
             n=chart.n,
         )
-    grade: Grade = "" if math.isnan(check.error_mm) or chart.holds(check.error_mm) else "warn"
+    grade: Grade = "" if math.isnan(check.error_mm) or chart.contains(check.error_mm) else "warn"
     return tuple(
         Fact(name, mm, "mm", decimals_of(check.unseen_mm), tip, Reader.AUDITOR, signed=True, grade=grade)
         for name, mm in zip((ALLOWED_FROM, ALLOWED_TO), chart.limits, strict=True)

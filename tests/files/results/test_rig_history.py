@@ -228,7 +228,7 @@ def test_each_artefact_is_charted_by_itself_with_limits_for_its_last_result():
     one, two = history.artefact_charts(FIRST.calibration_id)
     assert [check.artefact for check in one.checks] == ["GB 20-1"] and not one.limits.own
     assert len(two.checks) == len(STEADY_UM) + 1 and two.limits.own and two.limits.n == len(STEADY_UM)
-    assert two.limits.holds(0.005) and not two.limits.holds(0.015)
+    assert two.limits.contains(0.005) and not two.limits.contains(0.015)
     assert history.artefact_charts("another") == ()
 
 

@@ -392,7 +392,7 @@ def _on_even_plate(
     low, high = np.minimum(*sides), np.maximum(*sides)
     pull = width**2 * np.log(np.maximum(high, 1.0) / np.maximum(low, 1.0)) / (2 * reach)
     # brightness beside the stripe says less of what is under it: only steps count there
-    even = carrier.holds(uv) & (low > DARK * level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
+    even = carrier.contains(uv) & (low > DARK * level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
     if uneven is not None:
         marks = uneven.astype(np.float32)
         even &= np.max([_sample(marks, places) for places in (uv, *beside)], axis=0) < 0.5

@@ -61,7 +61,7 @@ class Plate:
             self._high = self._high + (seen[0] - whole[0])
         self._homography = homography_of(self._rays(view.uv), view.points[:, :2])
 
-    def holds(self, uv: Array, room: float = 0.0) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, room: float = 0.0) -> NDArray[np.bool_]:
         """Mask (N,) of the points (N, 2) in pixels that are on the plate; `room` widens it by a share of its margin."""
         if self._homography is None:
             return np.ones(len(uv), dtype=bool)
@@ -76,7 +76,7 @@ class Plate:
         """
         rows, columns = (size // SPACING + 2 for size in shape)
         places = SPACING * np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
-        within = self.holds(places.astype(np.float64), ROOM).reshape(rows, columns).astype(np.uint8)
+        within = self.contains(places.astype(np.float64), ROOM).reshape(rows, columns).astype(np.uint8)
         within = np.asarray(cv2.dilate(within, np.ones((3, 3), np.uint8)), dtype=np.uint8)
         whole = np.repeat(np.repeat(within, SPACING, axis=0), SPACING, axis=1)
         return np.asarray(whole[: shape[0], : shape[1]] == 0)

@@ -94,10 +94,10 @@ def places(x_mm: float, y_mm: float) -> np.ndarray:
 @pytest.mark.parametrize(("target", "edge_mm"), [(BlackSquare(60.0), 60.0), (Checkerboard(9, 7, 10.0), 90.0)])
 def test_the_plate_ends_at_its_margin(target, edge_mm):
     plate = Plate(target, view_of(target), CAMERA, 20.0)
-    assert plate.holds(places(edge_mm + 19.0, 10.0)).all()
-    assert not plate.holds(places(edge_mm + 21.0, 10.0)).any()
+    assert plate.contains(places(edge_mm + 19.0, 10.0)).all()
+    assert not plate.contains(places(edge_mm + 21.0, 10.0)).any()
     unstated = Plate(target, view_of(target), CAMERA, None)
-    assert unstated.holds(places(edge_mm + 9.0, 10.0)).all()
+    assert unstated.contains(places(edge_mm + 9.0, 10.0)).all()
 
 
 def test_a_part_of_a_board_may_be_any_part_of_it():
@@ -105,15 +105,15 @@ def test_a_part_of_a_board_may_be_any_part_of_it():
     part = board.points.reshape(7, 9, 3)[:, :5].reshape(-1, 3).copy()
     plate = Plate(board, view_of(board, part), CAMERA, 5.0)
     for x in (-45.0, 85.0):
-        assert plate.holds(places(x, 10.0)).all()
-    assert not plate.holds(places(10.0, 80.0)).any()
+        assert plate.contains(places(x, 10.0)).all()
+    assert not plate.contains(places(10.0, 80.0)).any()
 
 
 def test_what_is_outside_the_plate_is_not_looked_at():
     plate = Plate(TARGET, view_of(TARGET), CAMERA, None)
     outside = plate.outside((CAMERA.image_size[1], CAMERA.image_size[0]))
     uv = np.column_stack([U.ravel(), V.ravel()]).astype(float)
-    held = plate.holds(uv).reshape(U.shape)
+    held = plate.contains(uv).reshape(U.shape)
     assert not (outside & held).any()
     assert 0 < outside.mean() < 1
 
