@@ -67,7 +67,7 @@ class RecalledCamera:
     as_it_is: bool
 
 
-def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
+def recovered_views(calibration: CameraCalibration, where: str) -> SeenViews:
     """Recover the views that `calibration` was made from, so that it can be solved again without the pictures."""
     size = calibration.camera.image_size
     return SeenViews(

@@ -98,7 +98,7 @@ class FanOptions:
             raise ValueError(f"the angle between neighbouring lines must be between 0 and π/2 rad, not {self.angle}")
 
     @property
-    def seen_bowed(self) -> BoardShape | None:
+    def bowed_shape(self) -> BoardShape | None:
         """Shape of the target if the camera's calibration has found it bowed; else None."""
         return self.board if self.board is not None and self.board.values[:BOWS].any() else None
 
@@ -162,13 +162,13 @@ def fit_fan(
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
     foretold = predict(used, _bundle_poses(located), camera, plate)
     flat = None
-    if plate is not None and options.seen_bowed is None:
+    if plate is not None and options.bowed_shape is None:
         flat = solve(verdict.start, _bundle_poses(located), camera)
     summary = summarise(located, free, used, verdict, foretold, further, flat)
     summary = with_differences(summary, used, located, camera, plate)
     converged = verdict.converged and all(one.converged for one in (free, used, flat) if one is not None)
     of_fit = () if converged else (NOT_CONVERGED,)
-    shape_known = options.seen_bowed is not None
+    shape_known = options.bowed_shape is not None
     of_target = options.target.notes("plane_target", shape_known=shape_known)
     return replace(
         summary,
@@ -317,8 +317,8 @@ def _missing_tilt(stripes: Sequence[StripeLine], ends: Array, spread: float) -> 
 def _check_bow(fit: Bundle, options: FanOptions) -> None:
     """InputError if the target comes out far more bowed than it was said that it may be, or than the camera saw it."""
     bow, flatness_mm = float(np.abs(fit.shape.values[:BOWS]).max()), options.target.flatness_sd_mm
-    if options.seen_bowed is not None:
-        _check_bow_against(options.seen_bowed, fit.shape)
+    if options.bowed_shape is not None:
+        _check_bow_against(options.bowed_shape, fit.shape)
         return
     if not flatness_mm or bow <= MOST_BOWED * flatness_mm:
         return
@@ -363,7 +363,7 @@ def _check_bow_against(seen: BoardShape, found: BoardShape) -> None:
 
 def _plate(located: Sequence[LocatedPose], options: FanOptions) -> Plate | None:
     """The part of the target that points and stripes are on, if it may be bowed."""
-    seen = options.seen_bowed
+    seen = options.bowed_shape
     if seen is not None:
         known = seen.covariance[:BOWS, :BOWS] + BENDS_MM**2 * np.eye(BOWS)
         return Plate(seen.board, seen.values[:BOWS], known)

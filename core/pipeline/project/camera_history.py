@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from core.calibrate.camera.changes import CameraChanges, camera_changes
-from core.calibrate.camera.views import RecalledCamera, seen_again
+from core.calibrate.camera.views import RecalledCamera, recovered_views
 from core.calibrate.results import CameraCalibration
 from core.files.project.calibration_store import read_stored, read_stored_camera
 from core.files.project.data import Project
@@ -40,7 +40,7 @@ def recall_camera(project_folder: Path, project: Project, progress: Progress = s
     if hashes != about.inputs or not _shows(calibration, project.rig.camera_target):
         return RecalledCamera(calibration, None, False)
     same = _plain(about.settings) == _plain(project.options.for_camera.run_settings("camera"))
-    return RecalledCamera(calibration, seen_again(calibration, project.sources.camera), same)
+    return RecalledCamera(calibration, recovered_views(calibration, project.sources.camera), same)
 
 
 def compare_stored(

@@ -7,7 +7,7 @@ import pytest
 
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.changes import camera_changes
-from core.calibrate.camera.views import SeenView, SeenViews, judge_views, seen_again
+from core.calibrate.camera.views import SeenView, SeenViews, judge_views, recovered_views
 from core.calibrate.results import CAMERA_PARAMETERS
 from core.image.targets.target_view import TargetView
 from core.messages import plain
@@ -20,7 +20,7 @@ def calibration():
 
 
 def test_the_views_of_a_calibration_can_be_solved_again_without_their_pictures(calibration):
-    seen = seen_again(calibration, "somewhere")
+    seen = recovered_views(calibration, "somewhere")
     again = calibrate_camera(seen.found, seen.size)
     assert seen.size == TRUTH.image_size
     assert np.array_equal(again.camera.matrix, calibration.camera.matrix)
@@ -29,12 +29,12 @@ def test_the_views_of_a_calibration_can_be_solved_again_without_their_pictures(c
 def test_a_lost_view_stays_lost_when_seen_again(calibration):
     nothing = TargetView(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), "camera/empty.png")
     lost = replace(calibration.views[0], view=nothing, used=False, exclusion=plain("no board"))
-    seen = seen_again(replace(calibration, views=(*calibration.views, lost)), "somewhere")
+    seen = recovered_views(replace(calibration, views=(*calibration.views, lost)), "somewhere")
     assert [(one.name, str(one.reason)) for one in seen.lost] == [("camera/empty.png", "no board")]
 
 
 def test_views_are_judged_with_and_without_a_calibration(calibration):
-    seen = seen_again(calibration, "somewhere")
+    seen = recovered_views(calibration, "somewhere")
     alone, solved = judge_views(seen), judge_views(seen, (), calibration)
     assert alone.expected == () and alone.residuals is None
     near, middle, far = solved.expected
@@ -46,7 +46,7 @@ def test_views_are_judged_with_and_without_a_calibration(calibration):
 
 
 def test_views_left_out_cover_nothing(calibration):
-    seen = seen_again(calibration, "somewhere")
+    seen = recovered_views(calibration, "somewhere")
     judged = judge_views(seen, {view.name for view in seen.found})
     assert not judged.cells.any()
     assert "there is none" in str(judged.missing[0])

@@ -51,7 +51,7 @@ class WholeLight(NamedTuple):
     filled: NDArray[np.bool_]
     beside: NDArray[np.bool_]
 
-    def as_sure_as_seen(self, line: Centreline, filter_px: float) -> Centreline:
+    def with_measured_sigma(self, line: Centreline, filter_px: float) -> Centreline:
         """Widen the σ of a line found here to that of the measured points alone: mirrored points add no information.
 
         With a share f of the filter σ `filter_px` on such pixels, the variance is 1 + 2 f times that of as many of its

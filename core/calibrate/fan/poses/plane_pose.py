@@ -328,7 +328,7 @@ def _beside_marks(
     whole = across_marks(light.picture, light.saturated, sites.of(even.uneven) | light.outside, courses, usual)
     found = extract_centrelines(whole.picture, usual, noise=light.noise, saturated=whole.saturated, ignore=whole.beside)
     return sites.brought_back(
-        [whole.as_sure_as_seen(line, usual.filter_px) for line in found if follows(line, courses, usual)]
+        [whole.with_measured_sigma(line, usual.filter_px) for line in found if follows(line, courses, usual)]
     )
 
 
