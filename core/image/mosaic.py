@@ -81,14 +81,14 @@ class Sites:
         return None if stripe is None else replace(stripe, width_px=stripe.width_px / self.period)
 
     @overload
-    def stripe_back(self, stripe: StripeSettings) -> StripeSettings: ...
+    def stripe_in_whole_picture(self, stripe: StripeSettings) -> StripeSettings: ...
     @overload
-    def stripe_back(self, stripe: None) -> None: ...
-    def stripe_back(self, stripe: StripeSettings | None) -> StripeSettings | None:
+    def stripe_in_whole_picture(self, stripe: None) -> None: ...
+    def stripe_in_whole_picture(self, stripe: StripeSettings | None) -> StripeSettings | None:
         """Convert a stripe from px of the sites to px of the whole picture; None stays None."""
         return None if stripe is None else replace(stripe, width_px=stripe.width_px * self.period)
 
-    def brought_back(self, lines: Sequence[Centreline]) -> tuple[Centreline, ...]:
+    def in_whole_picture(self, lines: Sequence[Centreline]) -> tuple[Centreline, ...]:
         """Convert centrelines from px of the sites to px of the whole picture; points are then about a period apart."""
         if self == ALL_SITES:
             return tuple(lines)

@@ -77,7 +77,7 @@ def test_a_stripe_is_found_by_the_sites_that_see_it_where_it_is_as_sure_as_it_sa
         noise = np.random.default_rng(seed).normal(0, 2, light.shape)
         seen = sites.of((light + noise).round().clip(0, 255)).astype(np.float32)
         lines = extract_centrelines(seen, choose_settings(seen, 255.0), noise=estimate_noise(seen))
-        line = max(sites.brought_back(lines), key=len)
+        line = max(sites.in_whole_picture(lines), key=len)
         assert len(line) > 180
         assert np.median(line.width) == pytest.approx(3.0, rel=0.05)
         errors.append((line.uv[:, 1] - 120.37 - 0.2 * line.uv[:, 0]) * cosine / line.sigma)
@@ -107,13 +107,13 @@ def test_places_and_stripes_go_to_the_sites_and_back():
         choose_settings(sensed(1).astype(np.float32), 255.0),
         noise=estimate_noise(sensed(1)),
     )[0]
-    (back,) = sites.brought_back([line])
+    (back,) = sites.in_whole_picture([line])
     assert sites.places_of(back.uv) == pytest.approx(line.uv)
     assert back.sigma == pytest.approx(2 * line.sigma)
-    (same,) = ALL_SITES.brought_back([line])
+    (same,) = ALL_SITES.in_whole_picture([line])
     assert same is line
     stripe = choose_settings(sensed(1).astype(np.float32), 255.0)
-    assert sites.stripe_back(sites.stripe_of(stripe)) == stripe
+    assert sites.stripe_in_whole_picture(sites.stripe_of(stripe)) == stripe
     assert sites.stripe_of(stripe) == replace(stripe, width_px=stripe.width_px / 2)
     assert sites.stripe_of(None) is None
 

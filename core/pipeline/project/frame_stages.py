@@ -91,8 +91,8 @@ def frame_stages(
         )
     move_limit_px = at_sites(feature_options(settings), sites).move_limit_px
     reader = FrameReader(common.reference, common.stripe, move_limit_px)
-    features = reader((index, (name, sites.of(picture)))).brought_back(sites)
-    stripe = sites.stripe_back(common.stripe or common.reference.stripe)
+    features = reader((index, (name, sites.of(picture)))).in_whole_picture(sites)
+    stripe = sites.stripe_in_whole_picture(common.stripe or common.reference.stripe)
     brighter = STRIPE_AT / stripe.contrast
     difference = picture.astype(np.float32) - base
     lines = _lines(common, camera, fan, settled)

@@ -154,7 +154,7 @@ def extract_lines(
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times, further or {})
 
     def look(item: tuple[int, Frame]) -> tuple[FrameFeatures, FrameFeatures]:
-        features = reader(item).brought_back(sites)
+        features = reader(item).in_whole_picture(sites)
         with stage(times, "smoothing"):
             return features, _averaged(features)
 
@@ -169,7 +169,10 @@ def extract_lines(
             watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    fan, stripes = sites.brought_back(seen.fan), (sites.stripe_back(seen.stripe), sites.stripe_back(sweep_stripe))
+    fan, stripes = (
+        sites.in_whole_picture(seen.fan),
+        (sites.stripe_in_whole_picture(seen.stripe), sites.stripe_in_whole_picture(sweep_stripe)),
+    )
     lines = SeenLines(seen.image_size, fan, tuple(found), stripes)
     return lines, replace(lines, fan=refined(fan), frames=tuple(averaged))
 

@@ -47,11 +47,11 @@ class FrameFeatures(Excludable):
     exposures: Mapping[int, Exposures] = field(default_factory=dict)
     gain: float = 1.0
 
-    def brought_back(self, sites: Sites) -> FrameFeatures:
+    def in_whole_picture(self, sites: Sites) -> FrameFeatures:
         """Convert centrelines and shifts from px of `sites` to px of the whole picture."""
         return replace(
             self,
-            centrelines=sites.brought_back(self.centrelines),
+            centrelines=sites.in_whole_picture(self.centrelines),
             shift_px=sites.period * self.shift_px,
             fan_shifts_px=sites.period * self.fan_shifts_px,
         )

@@ -251,7 +251,7 @@ def _stripes(
         for each in (light, *light.further)
     )
     found = fused(first, others)[0] if others else first.lines
-    return sites.brought_back(found)
+    return sites.in_whole_picture(found)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -327,7 +327,7 @@ def _beside_marks(
         return ()
     whole = across_marks(light.picture, light.saturated, sites.of(even.uneven) | light.outside, courses, usual)
     found = extract_centrelines(whole.picture, usual, noise=light.noise, saturated=whole.saturated, ignore=whole.beside)
-    return sites.brought_back(
+    return sites.in_whole_picture(
         [whole.with_measured_sigma(line, usual.filter_px) for line in found if follows(line, courses, usual)]
     )
 

@@ -152,7 +152,7 @@ def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
 
 def of_whole(reference: ReferenceFeatures, sites: Sites, picture: Picture) -> ReferenceFeatures:
     """Extract what these sites of a whole picture with the fan alone show, in its px."""
-    return replace(reference, base=picture, fan=sites.brought_back(reference.fan))
+    return replace(reference, base=picture, fan=sites.in_whole_picture(reference.fan))
 
 
 def _seen_at(sites: Sites, frames: Iterable[Frame]) -> Iterator[Frame]:
