@@ -239,7 +239,7 @@ class Change:
         return (note_of("scan.fan_has_moved" if told else "scan.fan_seems_moved", times=self.times, p=self.p),)
 
 
-def reckoned(
+def stability_in_use(
     stated: Stability | None, charted: RigSpread | None, assumed: Stability = DEFAULT_STABILITY
 ) -> tuple[Stability, Source]:
     """Choose the stability to use, and the source of the uncertainty by it: `assumed` where neither other is known."""
@@ -264,7 +264,7 @@ def judge(
     `camera` and `fan` are those calibrated. The stability is that by the rig's checks, `charted`, where they say it;
     else that `stated`, else that `assumed`; what change adds says so.
     """
-    stability, source_of_change = reckoned(stated, charted, assumed)
+    stability, source_of_change = stability_in_use(stated, charted, assumed)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)

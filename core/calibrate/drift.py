@@ -106,7 +106,7 @@ def stability_after(stated: Stability | None, drift: Drift, since: Apart) -> Sta
     return DEFAULT_STABILITY.times(*[since.kelvins / USUAL_KELVINS] * 4)
 
 
-def loosened(evidence: Evidence, deviations: Sequence[Deviation], since: Stability) -> Evidence:
+def widened_evidence(evidence: Evidence, deviations: Sequence[Deviation], since: Stability) -> Evidence:
     """Widen the evidence of the K `deviations` by how much the rig may have changed `since` the pictures were taken."""
     if since == STABLE:
         return evidence

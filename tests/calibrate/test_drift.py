@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.calibrate.change import DEFAULT_STABILITY, STABLE, Evidence, Stability, lasting
-from core.calibrate.drift import NO_DRIFT, USUAL_KELVINS, Apart, Drift, apart, loosened, stability_after
+from core.calibrate.drift import NO_DRIFT, USUAL_KELVINS, Apart, Drift, apart, stability_after, widened_evidence
 from tests.calibrate.test_change import DEVIATIONS, seen
 
 AT_REST = Stability(50e-6, 0.005, 0.05, 2e-5)
@@ -40,13 +40,13 @@ def test_the_default_stands_for_as_much_as_is_usual_and_grows_beyond():
 
 def test_a_check_says_all_it_saw_where_nothing_has_changed_since():
     evidence = seen(1.0)
-    assert loosened(evidence, DEVIATIONS, STABLE) is evidence
+    assert widened_evidence(evidence, DEVIATIONS, STABLE) is evidence
 
 
 def test_what_has_changed_since_a_check_is_left_open_by_it():
     since = DEFAULT_STABILITY.times(0.5, 0.0, 0.5, 0.5)
     known = 1e6 * np.eye(len(DEVIATIONS))
-    evidence = loosened(Evidence(known, known, np.zeros(len(DEVIATIONS))), DEVIATIONS, since)
+    evidence = widened_evidence(Evidence(known, known, np.zeros(len(DEVIATIONS))), DEVIATIONS, since)
     _, left = lasting(DEVIATIONS, evidence, DEFAULT_STABILITY.times(100.0, 100.0, 100.0, 100.0))
     of_change = np.array([one.source == "change" for one in DEVIATIONS])
     assert np.sqrt(np.diag(left)[of_change]) == pytest.approx([0.5] * 3 + [1e-3] * 3 + [0.5] * 3, rel=0.01)
@@ -66,7 +66,7 @@ def test_a_loosened_check_is_unbiased_and_as_sure_as_it_says(seed=7, times=4000)
         before[of_change] -= 0.7 * sd * rng.normal(size=9)
         saw = Evidence(known, known, known @ before + root @ rng.normal(size=len(root)))
         estimate, left = lasting(
-            DEVIATIONS, loosened(saw, DEVIATIONS, DEFAULT_STABILITY.times(*[0.7] * 4)), DEFAULT_STABILITY
+            DEVIATIONS, widened_evidence(saw, DEVIATIONS, DEFAULT_STABILITY.times(*[0.7] * 4)), DEFAULT_STABILITY
         )
         off.append(np.linalg.solve(np.linalg.cholesky(left), estimate - x))
     found = np.array(off)

@@ -23,10 +23,10 @@ from core.calibrate.change import (
     changes,
     judge,
     lasting,
-    reckoned,
+    stability_in_use,
 )
 from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
-from core.calibrate.drift import NO_DRIFT, loosened
+from core.calibrate.drift import NO_DRIFT, widened_evidence
 from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
@@ -137,8 +137,10 @@ def check_step(
             likelihoods = tuple(map(float, log_likelihoods(deviations, evidence)))
             by_default = sees.told(check, DEFAULT_STABILITY).stated_mm
             # what a history says must not rest on what it has said before
-            past = PastCheck.of(sees.told(check, reckoned(stated.stability, None)[0]), celsius, likelihoods, by_default)
-            check = sees.told(check, reckoned(stated.stability, spread)[0])
+            past = PastCheck.of(
+                sees.told(check, stability_in_use(stated.stability, None)[0]), celsius, likelihoods, by_default
+            )
+            check = sees.told(check, stability_in_use(stated.stability, spread)[0])
         log.notes.append(check.sentence)
         log.notes.extend(() if sees is None else sees.notes_on_what_is_open(check))
         log.notes.extend(_kept(recording_set, past))
@@ -327,7 +329,7 @@ def judged(
         checked, of_check = check_poses(seen, camera, fan, deviations)
         agree = agrees(deviations, of_check)
         if at_scan:
-            of_check = loosened(
+            of_check = widened_evidence(
                 of_check, deviations, change_since_check(recording_set, taken_at(check_paths(recording_set)))
             )
         evidence += of_check
