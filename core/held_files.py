@@ -58,7 +58,7 @@ def remove_tree(folder: Path, *, leave: bool = False) -> None:
         shutil.rmtree(folder, ignore_errors=True)  # the rest of it
 
 
-def is_held(error: OSError) -> bool:
+def is_open_elsewhere(error: OSError) -> bool:
     """Whether the reason is surely that another program has a file open."""
     return isinstance(error, HeldOpen) or getattr(error, "winerror", None) in _HELD
 

@@ -23,7 +23,7 @@ from core.files.project.folder import (
     write_autosave,
     write_project,
 )
-from core.files.project.lock import ProjectLock, held_by, take_lock
+from core.files.project.lock import ProjectLock, lock_owner, take_lock
 from core.files.project.people import Person, Rules, read_rules, reason_wanted, refused, with_pin
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
@@ -392,7 +392,7 @@ class ProjectModel(QObject):
             if self._lock is not None and self._lock.folder == folder and access is not Access.TAKE_OVER:
                 lock = self._lock  # the project that is open is opened once more
             else:
-                before = held_by(folder)
+                before = lock_owner(folder)
                 lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
                 if before is not None:
                     append(folder, "taken over", why=f"{before.owner}@{before.host}")

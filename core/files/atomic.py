@@ -16,7 +16,7 @@ from pathlib import Path
 
 from core import held_files
 from core.errors import InputError
-from core.held_files import HeldOpen, is_held, remove_tree, rename
+from core.held_files import HeldOpen, is_open_elsewhere, remove_tree, rename
 from core.messages import Message, plain
 
 ANOTHER_OUT = Message("advice.another_out", "choose another folder with --out")
@@ -189,7 +189,13 @@ def cannot_write(path: Path, error: OSError) -> InputError:
     """Make the error for a file or folder that could not be written."""
     if isinstance(error, HeldOpen):
         path = Path(error.filename2 or error.filename or path)  # of several files the one that is held
-    known = _HELD_OPEN if is_held(error) else _TOO_LONG if _is_too_long(path, error) else _REASONS.get(error.errno or 0)
+    known = (
+        _HELD_OPEN
+        if is_open_elsewhere(error)
+        else _TOO_LONG
+        if _is_too_long(path, error)
+        else _REASONS.get(error.errno or 0)
+    )
     what, todo = known or (plain(error.strerror or str(error)), ANOTHER_OUT)
     return InputError(
         Message("file.cannot_be_written", "cannot be written, because {what}", what=what), where=path, todo=todo

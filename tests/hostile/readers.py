@@ -25,7 +25,7 @@ from core.files.plan.plan_file import read_plan, write_plan
 from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project
-from core.files.project.lock import held_by, take_lock
+from core.files.project.lock import lock_owner, take_lock
 from core.files.project.packing import pack_project, unpack_project
 from core.files.project.people import Rules, person, read_rules, write_rules
 from core.files.project.report_template import read_report_template
@@ -121,7 +121,7 @@ READERS = {
     "project": Reader("project/project.json", read_project),
     "audit": Reader("project/audit.jsonl", lambda path: read_trail(path.parent)),
     "people": Reader("project/people.json", lambda path: read_rules(path.parent)),
-    "lock": Reader("project/.lock.json", lambda path: held_by(path.parent)),
+    "lock": Reader("project/.lock.json", lambda path: lock_owner(path.parent)),
     "packed": Reader("packed.trisectz", _packed),
     "camera": Reader("camera.json", read_camera),
     "planes": Reader("planes.json", lambda path: read_planes(path, _camera(path))),

@@ -141,7 +141,7 @@ def _stamp(path: Path) -> Stamp | None:
     return of.st_dev, of.st_ino, of.st_size, of.st_mtime_ns
 
 
-def held_by(folder: Path) -> LockOwner | None:
+def lock_owner(folder: Path) -> LockOwner | None:
     """Read the owner of the lock; None if the project is not open, as far as can be known."""
     holder = read_holder(folder)
     if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK, holder)):
@@ -172,7 +172,7 @@ def _take(folder: Path, *, take_over: bool) -> ProjectLock:
     except OSError as error:
         raise cannot_write(path, error) from error
     try:
-        before = held_by(folder)
+        before = lock_owner(folder)
         if before is not None and not take_over:
             raise ProjectInUse(before, folder)
         if take_over or path.exists():

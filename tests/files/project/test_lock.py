@@ -16,7 +16,7 @@ import pytest
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.project import lock
-from core.files.project.lock import LOCK, ProjectInUse, held_by, take_lock, user_name
+from core.files.project.lock import LOCK, ProjectInUse, lock_owner, take_lock, user_name
 
 HOLD = """
 import sys, time
@@ -37,7 +37,7 @@ def test_who_opens_second_is_told_who_has_the_project_where_and_since_when(tmp_p
     again = pickle.loads(pickle.dumps(told.value))
     assert (again.holder, str(again)) == (told.value.holder, str(told.value))
     lock.release()
-    assert held_by(tmp_path) is None
+    assert lock_owner(tmp_path) is None
     assert not list(tmp_path.iterdir())
     take_lock(tmp_path).release()
 
@@ -51,7 +51,7 @@ def test_who_takes_over_has_it_and_the_first_one_learns_of_it_and_does_not_let_g
         first.check()
     first.release()
     second.check()
-    assert held_by(tmp_path) == second.holder
+    assert lock_owner(tmp_path) == second.holder
     second.release()
 
 
@@ -60,11 +60,11 @@ def test_a_killed_program_holds_nothing(tmp_path: Path) -> None:
     with subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path)], stdout=subprocess.PIPE, text=True) as program:
         assert program.stdout is not None
         assert program.stdout.readline() == "held\n"
-        assert held_by(tmp_path) is not None
+        assert lock_owner(tmp_path) is not None
         program.kill()
         program.wait()
     assert (tmp_path / LOCK).exists()
-    assert held_by(tmp_path) is None
+    assert lock_owner(tmp_path) is None
     take_lock(tmp_path).release()
 
 
@@ -130,7 +130,7 @@ def test_what_a_killed_program_left_half_written_goes_when_the_project_is_opened
 def test_who_looks_while_another_takes_the_project_does_not_take_it_as_well(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    look, taken, others = lock.held_by, list[lock.ProjectLock](), list[threading.Thread]()
+    look, taken, others = lock.lock_owner, list[lock.ProjectLock](), list[threading.Thread]()
 
     def take() -> None:
         with contextlib.suppress(ProjectInUse):
@@ -144,7 +144,7 @@ def test_who_looks_while_another_takes_the_project_does_not_take_it_as_well(
             others[0].join(0.3)
         return found
 
-    monkeypatch.setattr(lock, "held_by", look_slowly)
+    monkeypatch.setattr(lock, "lock_owner", look_slowly)
     take()
     others[0].join()
     assert len(taken) == 1

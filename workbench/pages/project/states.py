@@ -12,7 +12,7 @@ from core.files.project.changes import Change, differences
 from core.files.project.data import ProjectFile
 from core.files.project.folder import Version, read_project, recoverable, rescues
 from core.files.project.json_form import NewerProject
-from core.files.project.lock import held_by
+from core.files.project.lock import lock_owner
 from core.messages import visible
 from workbench.language import named, time_of, tr
 from workbench.project_model import Access
@@ -32,7 +32,7 @@ class StateChoice:
 
 def choose_access(parent: QWidget, folder: Path) -> Access | None:
     """Ask how to open the project in `folder`; None if the user cancels. Asks where somebody has it open."""
-    holder = held_by(folder)
+    holder = lock_owner(folder)
     if holder is None:
         return Access.ALONE
     text = tr(
