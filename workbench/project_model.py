@@ -24,7 +24,7 @@ from core.files.project.folder import (
     write_project,
 )
 from core.files.project.lock import ProjectLock, lock_owner, take_lock
-from core.files.project.people import Person, Rules, read_rules, reason_wanted, refused, with_pin
+from core.files.project.people import Person, Rules, needs_reason, read_rules, refused, with_pin
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
 from workbench.language import spoken
@@ -250,7 +250,7 @@ class ProjectModel(QObject):
         if after == self.project:
             return
         refusal = refused(self.rules, self.signed_in, self.project, after)
-        wanted = refusal is None and reason_wanted(self.rules, self.results, self.project, after)
+        wanted = refusal is None and needs_reason(self.rules, self.results, self.project, after)
         why = self.ask_reason(label) if wanted else ""
         if refusal is not None or (wanted and not why):
             if refusal is not None:

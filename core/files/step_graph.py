@@ -78,7 +78,7 @@ class Step:
     shows: tuple[str, ...] = ()
     in_project: bool = False
 
-    def wanted(self, there: Collection[str], asked: Collection[str]) -> bool:
+    def is_requested(self, there: Collection[str], asked: Collection[str]) -> bool:
         """Whether the step is to be done with pictures of the parts `there`, if the steps `asked` are requested."""
         return all(part in there for part in self.reads) and (not self.on_request or self.name in asked)
 
@@ -126,7 +126,7 @@ GRAPH = (
 class Place(Protocol[Stop]):
     """Place where steps are done: a recording set or a project."""
 
-    def wants(self, step: Step, /) -> bool:
+    def is_due(self, step: Step, /) -> bool:
         """Whether a step is to be done, now that those before it have been."""
 
     def do(self, step: Step, /) -> Stop | None:
@@ -136,7 +136,7 @@ class Place(Protocol[Stop]):
 def do_steps(place: Place[Stop]) -> Stop | None:
     """Do every step that a place wants, in the order of work; return what stopped it, if anything did."""
     for step in GRAPH:
-        if place.wants(step) and (stop := place.do(step)) is not None:
+        if place.is_due(step) and (stop := place.do(step)) is not None:
             return stop
     return None
 

@@ -116,9 +116,9 @@ class _Run:
         self._checked: tuple[PoseFeatures, ...] | None = None
         self._seen = begin_looking(recording_set, options.for_scan, progress, beside)
 
-    def wants(self, step: Step) -> bool:
+    def is_due(self, step: Step) -> bool:
         """Whether a step is to be done, now that those before it have been done."""
-        return step.wanted(self._there, self._asked)
+        return step.is_requested(self._there, self._asked)
 
     def do(self, step: Step) -> None:
         getattr(self, step.name)()

@@ -103,7 +103,7 @@ class ScanResult:
     rows_seen_to_roll: bool = False
 
     @property
-    def asks_for_cause(self) -> bool:
+    def needs_cause(self) -> bool:
         """Whether anything was found in its crossings that should not be there."""
         seen = self.movements or self.drifted or self.fan_disagrees or self.rig_changed or self.second_bounces.pieces
         return bool(seen) or self.rows_seen_to_roll or self.scale > TIMES

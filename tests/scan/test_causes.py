@@ -43,13 +43,13 @@ def compared(scan, *, seed=1, fan=None, movements=None):
 def test_nothing_explains_a_scan_that_is_in_order(still, seed):
     solved, causes = compared(still, seed=seed, movements=(Between(11, 12),))
     assert causes == ()
-    assert not replace(solved, movements=()).asks_for_cause
+    assert not replace(solved, movements=()).needs_cause
 
 
 def test_a_part_that_moved_is_the_first_cause_and_says_when():
     mask = ExactScan.of(Scenario(object="mask", scale=0.35), moved=(30, (0.3, 0.0, 0.0)))
     solved, causes = compared(mask)
-    assert solved.asks_for_cause and causes[0].suspect == Suspect.MOVED and causes[0].share > 0.5
+    assert solved.needs_cause and causes[0].suspect == Suspect.MOVED and causes[0].share > 0.5
     (note,) = note_on_causes(
         causes, ScanFacts(moved=solved.moved), solved.movements, [f"frame{n:02d}" for n in range(60)]
     )
@@ -105,7 +105,7 @@ def test_a_drift_is_no_movement_and_a_movement_no_drift(changes, suspect):
     """Both are compared, also where only one was found: that of a rendered block."""
     features, rig = features_of(replace(BLOCK, **changes))
     solved = reconstruct(features, rig.camera, rig.fan)
-    assert solved.asks_for_cause
+    assert solved.needs_cause
     seen = replace(solved, movements=(Between(AT - 1, AT),))
     first, *others = compare_causes(features, seen, rig.camera, rig.fan, (), rig_changes(rig.camera, rig.fan))
     assert first.suspect == suspect and first.share > 0.5

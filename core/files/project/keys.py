@@ -79,7 +79,7 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
     }
     requests = {"gauge": "gauge" in results, "inspection": project.inspection.features}
     there, asked = ([name for name, one in which.items() if one] for which in (pictures, requests))
-    wanted = (step.name for step in IN_PROJECT if step.wanted(there, asked))
+    wanted = (step.name for step in IN_PROJECT if step.is_requested(there, asked))
     return tuple(step for step in wanted if not up_to_date(step, project, results))
 
 

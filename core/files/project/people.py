@@ -175,7 +175,7 @@ def limits_changed(before: Project, after: Project) -> bool:
     return _limits(before) != _limits(after)
 
 
-def reason_wanted(rules: Rules, results: Mapping[str, Done], before: Project, after: Project) -> bool:
+def needs_reason(rules: Rules, results: Mapping[str, Done], before: Project, after: Project) -> bool:
     """Whether a change needs a reason: limits are changed after something was judged by them."""
     return rules.reasons and any(step in results for step in _JUDGED) and limits_changed(before, after)
 

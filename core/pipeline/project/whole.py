@@ -117,7 +117,7 @@ class _Work:
                 require_scan(recording_set)
                 self._seen = begin_looking(recording_set, self._project.options.for_scan, self._progress, beside)
 
-    def wants(self, step: Step) -> bool:
+    def is_due(self, step: Step) -> bool:
         """Whether a step is left to do, now that those before it have been done."""
         return step.name in left_to_do(self.file.project, self.file.results)
 

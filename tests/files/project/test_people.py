@@ -16,9 +16,9 @@ from core.files.project.people import (
     PEOPLE,
     Rules,
     needed_role,
+    needs_reason,
     person,
     read_rules,
-    reason_wanted,
     refused,
     reset_rules,
     sign,
@@ -130,7 +130,7 @@ def test_a_reason_is_wanted_where_it_is_asked_for_and_limits_change_after_someth
     before = with_gauge(new_project("Block"), 50.0)
     judged = {"gauge": Done("k", at=datetime.now(UTC))}
     other, typed = with_gauge(before, 51.0), replace(before, info=replace(before.info, serial="7"))
-    assert reason_wanted(Rules(reasons=True), judged, before, other)
-    assert not reason_wanted(Rules(reasons=True), judged, before, typed)
-    assert not reason_wanted(Rules(reasons=True), {}, before, other)
-    assert not reason_wanted(Rules(), judged, before, other)
+    assert needs_reason(Rules(reasons=True), judged, before, other)
+    assert not needs_reason(Rules(reasons=True), judged, before, typed)
+    assert not needs_reason(Rules(reasons=True), {}, before, other)
+    assert not needs_reason(Rules(), judged, before, other)

@@ -108,12 +108,12 @@ class ScanPage(StepPage):
             self.guide.refresh()
         self.card.refresh()
         self.card.setVisible(not live)
-        check_wanted = p.check_wanted and self.source.mode == "live"
-        self.check.refresh(wanted=check_wanted)
+        check_is_due = p.check_is_due and self.source.mode == "live"
+        self.check.refresh(wanted=check_is_due)
         before = p.live_stage in STAGES_BEFORE
         self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])
         self.source.set_folder(p.folder, self._folder_words())
-        self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY) and not check_wanted)
+        self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY) and not check_is_due)
         self.live_panel.refresh()
         if live:
             self.source.set_mode("live")

@@ -171,7 +171,7 @@ class ScanPresenter(StepPresenter):
         return bool(self.project.accepted.camera and self.project.accepted.planes)
 
     @property
-    def check_wanted(self) -> bool:
+    def check_is_due(self) -> bool:
         """Whether pictures of the check are the next thing to take: none is of today, and the scan is still to come.
 
         Planes that were calibrated a moment ago are as good as a check.

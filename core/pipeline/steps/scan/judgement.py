@@ -143,7 +143,7 @@ def judged_scan(
 
 def _causes(solved: Solved, change: Change) -> Causes:
     """What explains most of what crossings are off too much; nothing is compared where nothing is too large."""
-    if not solved.scan.asks_for_cause and change.p >= P_TOLD:
+    if not solved.scan.needs_cause and change.p >= P_TOLD:
         return ()
     camera, fan = solved.calibration.camera, solved.calibration.fan
     of_calibration = calibration_deviations(camera, fan)
