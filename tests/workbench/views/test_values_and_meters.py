@@ -51,10 +51,10 @@ def test_a_meter_names_its_zone(qtbot, theme):
     qtbot.waitExposed(meter)
     for value, said in ((2, "2 mm/s · fair"), (3.1, "2 mm/s · good"), (99, "2 mm/s · poor")):
         meter.set_value(value, "2 mm/s")
-        assert meter.said == said
+        assert meter.value_text == said
     for unknown in (None, float("nan")):
         meter.set_value(unknown)
-        assert meter.said == "–"
+        assert meter.value_text == "–"
         meter.grab()
     theme("dark")
 

@@ -107,7 +107,7 @@ class GuideBand(QFrame):
     def refresh(self) -> None:
         """Show the state of the presenter; a sentence stays for at least a second."""
         live, now = self._presenter.live, self._presenter.guidance
-        self._steady.want((now.level, now.sentence), at_once=now.level == "")
+        self._steady.show((now.level, now.sentence), at_once=now.level == "")
         self.beside.setText(now.beside)
         self.beside.setVisible(bool(now.beside))
         self.covered.setText(now.covered)

@@ -144,7 +144,7 @@ class ScanPage(StepPage):
         self.source.accept_drops_on(self.picture.image)
         self.frames.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.frames.current_changed.connect(lambda name: p.scrub.choose(name))
-        self.frames.thumbnail_wanted.connect(p.thumbnails.want)
+        self.frames.thumbnail_wanted.connect(p.thumbnails.request)
         p.thumbnails.changed.connect(self._show_frames)
         self.bar.view_chosen.connect(self.picture.show_view)
         self.bar.choose(View.CROSSINGS)

@@ -41,7 +41,7 @@ class FrameThumbnails(QObject):
         if self._of != self._source():
             self.forget()
 
-    def want(self, name: str) -> None:
+    def request(self, name: str) -> None:
         """Read the picture of a frame that is in sight and has none yet."""
         if name in self.pictures:
             return

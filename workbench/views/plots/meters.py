@@ -65,7 +65,7 @@ class Meter(QWidget):
             value = None
         if (value, text) != (self._value, self._text):
             self._value, self._text = value, text
-            self.setAccessibleDescription(self.said)
+            self.setAccessibleDescription(self.value_text)
             self.update()
 
     @property
@@ -76,7 +76,7 @@ class Meter(QWidget):
         return next((level for end, level in self._zones if self._value <= end), self._zones[-1][1])
 
     @property
-    def said(self) -> str:
+    def value_text(self) -> str:
         """Value and its zone in words."""
         return " · ".join(part for part in (self._text, self._names.get(self.level, "")) if part) or "–"
 
@@ -109,7 +109,7 @@ class Meter(QWidget):
         painter.drawText(words, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter), self._title)
         level = self.level
         painter.setPen(QColor(getattr(s, level) if level else s.text))
-        painter.drawText(words, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), self.said)
+        painter.drawText(words, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), self.value_text)
         bar = QRectF(_NEEDLE, line + 5, self.width() - 2 * _NEEDLE, _BAR)
         self._draw_zones(painter, bar)
         if self._value is not None:
@@ -148,7 +148,7 @@ class Steady(QObject):
         self._clock.setSingleShot(True)
         self._clock.timeout.connect(self._show)
 
-    def want(self, said: Any, *, at_once: bool = False) -> None:
+    def show(self, said: Any, *, at_once: bool = False) -> None:
         """Show a value: now where it may not wait or the last has been shown long enough, else later."""
         self._wanted = said
         if said == self.now:
@@ -192,7 +192,7 @@ class HintBar(QFrame):
 
     def set_hints(self, hints: Sequence[str]) -> None:
         """Set the present hints, the most important first."""
-        self._steady.want(tuple(hints), at_once=not self._steady.now)
+        self._steady.show(tuple(hints), at_once=not self._steady.now)
 
     @property
     def text(self) -> str:
