@@ -51,7 +51,7 @@ class CalibrationCard(StageCard):
             Stage.ACCEPTED: p.state.sentence,
             **self._sentences(),
         }
-        why = {"run": p.can_search, "accept": p.can_accept, "reject": p.can_reject}
+        why = {"run": p.cannot_search, "accept": p.cannot_accept, "reject": p.cannot_reject}
         self.show_stage(
             {**same, **self._titles()}[stage],
             sentences[stage],

@@ -140,12 +140,12 @@ class CalibrationPresenter(StepPresenter):
         return self._missing().get(self.stage, "")
 
     @property
-    def can_search(self) -> str:
+    def cannot_search(self) -> str:
         """Reason why the pictures cannot be searched now, or ""."""
         return self._sentence(disabled_reasons(self._facts()).run)
 
     @property
-    def can_accept(self) -> str:
+    def cannot_accept(self) -> str:
         """Reason why nothing can be accepted now, or ""."""
         return self._sentence(disabled_reasons(self._facts()).accept)
 
@@ -155,10 +155,10 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def waits_to_be_accepted(self) -> bool:
-        return not self.can_accept
+        return not self.cannot_accept
 
     @property
-    def can_reject(self) -> str:
+    def cannot_reject(self) -> str:
         """Reason why nothing can be rejected now, or ""."""
         return self._sentence(disabled_reasons(self._facts()).reject)
 
@@ -232,17 +232,17 @@ class CalibrationPresenter(StepPresenter):
 
     def accept(self) -> None:
         """Accept the calibration that is shown; undoable."""
-        if not self.can_accept:
+        if not self.cannot_accept:
             self.acceptance.accept(*self._made())
 
     def reject(self) -> None:
         """Reject the calibration that is shown; undoable."""
-        if not self.can_reject:
+        if not self.cannot_reject:
             self.acceptance.reject(self.candidate)
 
     def do_run(self) -> None:
         """Search the pictures, then solve."""
-        if not self.can_search:
+        if not self.cannot_search:
             self.work.search()
 
     def do_accept(self) -> None:

@@ -165,14 +165,14 @@ class InspectPage(StepPage):
     def _show_stage(self, stage: Stage) -> None:
         p = self.presenter
         title, said = self._words()[stage]
-        why_not = p.repeats.can_add
+        why_not = p.repeats.cannot_add
         self.card.buttons["measure"].setText(tr("Measure again") if p.scan.gauge is not None else tr("Measure"))
         fresh = stage is Stage.MEASURED
         self.card.show_stage(
             title,
             said,
             {
-                "measure": (p.can_measure, tr("Measure the thickness of the two faces (Ctrl+R)")),
+                "measure": (p.cannot_measure, tr("Measure the thickness of the two faces (Ctrl+R)")),
                 "repeat": (why_not, tr("Add this scan's thickness to the series of repeats")),
             },
             "" if fresh else "measure",

@@ -138,7 +138,7 @@ class InspectPresenter(StepPresenter):
         return self._unmeasurable
 
     @property
-    def can_measure(self) -> str:
+    def cannot_measure(self) -> str:
         """Reason why the thickness cannot be measured now, or ""."""
         return {
             WhyNot.NOTHING: "",
@@ -154,7 +154,7 @@ class InspectPresenter(StepPresenter):
     def do_run(self) -> None:
         """Measure the thickness of the scan among the results."""
         folder, project = self.model.folder, self.project
-        if folder is None or self.can_measure:
+        if folder is None or self.cannot_measure:
             return
         self._unmeasurable = ""
 

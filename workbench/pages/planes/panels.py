@@ -66,7 +66,7 @@ class PlanesCard(CalibrationCard):
 
     def _next(self, stage: Stage) -> str:
         if stage is Stage.OUTDATED:
-            return "accept" if self._presenter.candidate and not self._presenter.can_accept else "run"
+            return "accept" if self._presenter.candidate and not self._presenter.cannot_accept else "run"
         return {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.FAILED: "run"}.get(stage, "")
 
 

@@ -112,7 +112,7 @@ class PlanesPresenter(CalibrationPresenter):
 
     def accept(self) -> None:
         """Accept the planes that are shown; undoable. A minority of poses needs a decision."""
-        minority = None if self.can_accept else self._minority()
+        minority = None if self.cannot_accept else self._minority()
         if minority is None or self.decide(minority):
             super().accept()
 

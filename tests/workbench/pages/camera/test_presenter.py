@@ -48,16 +48,18 @@ def settled(qtbot, presenter):
 
 
 def test_nothing_is_calibrated_or_accepted_in_a_project_that_is_read_only(solved, monkeypatch):
-    assert solved.can_search == solved.can_accept == ""
+    assert solved.cannot_search == solved.cannot_accept == ""
     monkeypatch.setattr(type(solved.model), "is_read_only", property(lambda _: True))
-    assert solved.can_search == solved.can_accept == "The project is read-only: go on in a copy (File, Save a copy)."
-    assert solved.can_reject == "", "it is not on the disk"
+    assert (
+        solved.cannot_search == solved.cannot_accept == "The project is read-only: go on in a copy (File, Save a copy)."
+    )
+    assert solved.cannot_reject == "", "it is not on the disk"
 
 
 def test_without_pictures_it_asks_for_some(presenter):
     assert presenter.stage is Stage.NONE
     assert presenter.blocker() == "Record or choose pictures of the camera's target first."
-    assert presenter.can_search and presenter.can_accept and presenter.can_reject
+    assert presenter.cannot_search and presenter.cannot_accept and presenter.cannot_reject
 
 
 def test_a_folder_without_pictures_is_told(presenter, tmp_path, qtbot):
@@ -168,7 +170,7 @@ def test_accepting_keeps_records_and_opens_the_way(accepted):
     assert accepted.stage is Stage.ACCEPTED
     assert accepted.blocker() == ""
     assert accepted.state.state is State.DONE
-    assert accepted.can_accept == "This calibration is accepted already."
+    assert accepted.cannot_accept == "This calibration is accepted already."
     assert (accepted.model.folder / "calibrations" / f"camera-{accepted.candidate}.json").exists()
 
 
@@ -202,7 +204,7 @@ def test_rejecting_what_is_not_accepted_stops_the_way(solved):
     solved.reject()
     assert solved.stage is Stage.REJECTED
     assert "was rejected" in solved.blocker()
-    assert solved.can_reject and not solved.can_accept
+    assert solved.cannot_reject and not solved.cannot_accept
 
 
 def test_rejecting_what_was_accepted_is_undone(accepted):
@@ -406,7 +408,7 @@ def test_a_solution_found_but_not_accepted_is_offered_again_when_the_project_is_
     reopened(solved, qtbot)
     qtbot.waitUntil(lambda: solved.stage is Stage.SOLVED)
     assert solved.candidate == shown
-    assert solved.can_accept == "" and solved.can_reject == ""
+    assert solved.cannot_accept == "" and solved.cannot_reject == ""
     assert solved.bench.measuring.ran.count(jobs.FIND_VIEWS) == searched
 
 

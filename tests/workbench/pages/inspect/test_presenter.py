@@ -78,7 +78,7 @@ def warnings(presenter):
 
 def test_without_a_scan_next_is_blocked_with_a_sentence(empty):
     assert empty.stage is Stage.NO_SCAN
-    assert empty.blocker() == empty.can_measure == "Scan the part first."
+    assert empty.blocker() == empty.cannot_measure == "Scan the part first."
     empty.do_run()
     assert not empty.bench.measuring.busy
 
@@ -114,7 +114,7 @@ def test_a_scan_that_cannot_be_read_is_told_and_can_be_read_again(empty, quick, 
         empty.model.record(step, done)
     qtbot.waitUntil(lambda: empty.stage is Stage.UNREADABLE)
     assert empty.scan.problem == "cloud.ply: this is no whole PLY file."
-    assert empty.can_measure == "The scan cannot be read."
+    assert empty.cannot_measure == "The scan cannot be read."
 
 
 def test_another_project_forgets_the_scan(shown, tmp_path):
@@ -128,7 +128,7 @@ def test_another_project_forgets_the_scan(shown, tmp_path):
 def measured_again(presenter, measuring, qtbot):
     presenter.do_run()
     assert presenter.stage is Stage.MEASURING
-    assert presenter.can_measure == "The thickness is being measured."
+    assert presenter.cannot_measure == "The thickness is being measured."
     measuring.finish(cases.gauge())
     qtbot.waitUntil(lambda: not presenter.scan.stale)
 
@@ -148,7 +148,7 @@ def test_between_measuring_and_reading_the_old_thickness_is_not_called_done(show
     shown.do_run()
     measuring.finish(cases.gauge())
     assert shown.stage is Stage.READING
-    assert shown.repeats.can_add
+    assert shown.repeats.cannot_add
     qtbot.waitUntil(lambda: shown.stage is Stage.MEASURED)
 
 
@@ -212,9 +212,9 @@ def test_a_scan_that_is_out_of_date_itself_is_named_as_the_reason(shown):
     shown.model.edit("accept", replace(shown.project, accepted=Accepted("camera-2", "fan-2")))
     assert shown.stage is Stage.OUTDATED and "scan" in shown.state.sentence
     assert shown.warning() == "Measure the scan again first, on the page before."
-    assert shown.repeats.can_add.startswith("The scan is out of date")
+    assert shown.repeats.cannot_add.startswith("The scan is out of date")
     undo(shown)
-    assert shown.stage is Stage.MEASURED and shown.repeats.can_add == ""
+    assert shown.stage is Stage.MEASURED and shown.repeats.cannot_add == ""
 
 
 # ---- nominal value and tolerance
@@ -266,20 +266,20 @@ def test_without_a_thickness_the_first_region_waits_for_the_second(unmeasured):
     unmeasured.faces.set_region("lower", TRIANGLE)
     assert unmeasured.faces.spec.lower_polygon_px is None
     assert np.array_equal(unmeasured.faces.region("lower"), TRIANGLE)
-    assert unmeasured.can_measure == "Draw the upper face too, or let the faces be found automatically."
+    assert unmeasured.cannot_measure == "Draw the upper face too, or let the faces be found automatically."
     unmeasured.do_run()
     assert not unmeasured.bench.measuring.busy
     unmeasured.faces.set_region("upper", TRIANGLE + 20)
-    assert unmeasured.faces.own and unmeasured.can_measure == ""
+    assert unmeasured.faces.own and unmeasured.cannot_measure == ""
     unmeasured.model.save()  # what is kept can be written
 
 
 def test_a_waiting_region_can_be_given_up(unmeasured):
     unmeasured.faces.set_region("upper", TRIANGLE)
-    assert unmeasured.can_measure.startswith("Draw the lower face too")
+    assert unmeasured.cannot_measure.startswith("Draw the lower face too")
     assert unmeasured.faces.buttons.automatic == ""
     unmeasured.faces.find_automatically()
-    assert unmeasured.faces.region("upper") is None and unmeasured.can_measure == ""
+    assert unmeasured.faces.region("upper") is None and unmeasured.cannot_measure == ""
 
 
 def test_faces_found_become_regions_and_go_again(shown):
@@ -461,7 +461,7 @@ def with_repeats(presenter, *repeats):
 
 
 def test_a_scan_is_added_once(shown):
-    assert shown.repeats.can_add == ""
+    assert shown.repeats.cannot_add == ""
     shown.repeats.add()
     repeat = shown.project.repeats[0]
     assert (repeat.scan, repeat.thickness_mm, repeat.U_mm) == (cases.RECORDING, 50.012, 0.024)
@@ -475,13 +475,13 @@ def test_a_scan_is_added_once(shown):
 
 def test_an_out_of_date_thickness_is_not_added(shown):
     shown.faces.set_number("nominal_mm", 49.0)
-    assert shown.repeats.can_add == "The thickness is out of date; measure it again."
+    assert shown.repeats.cannot_add == "The thickness is out of date; measure it again."
     shown.repeats.add()
     assert shown.project.repeats == ()
 
 
 def test_without_a_thickness_there_is_nothing_to_add(unmeasured):
-    assert unmeasured.repeats.can_add == "Measure the thickness first."
+    assert unmeasured.repeats.cannot_add == "Measure the thickness first."
 
 
 def test_removing_a_repeat_is_undone(shown):

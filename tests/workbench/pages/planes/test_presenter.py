@@ -100,14 +100,14 @@ def test_every_stage_before_a_calibration_says_what_is_missing(
         (Stage.FOUND, "Calibrate the laser planes from their pictures first."),
         (Stage.NO_CAMERA, "Accept a camera calibration first."),
     ]
-    assert page.can_search == "Accept a camera calibration first."
-    assert page.can_accept == page.can_reject == "There is no calibration yet."
+    assert page.cannot_search == "Accept a camera calibration first."
+    assert page.cannot_accept == page.cannot_reject == "There is no calibration yet."
 
 
 def test_a_chosen_folder_is_measured_and_solved(page: PlanesPresenter, pictures: Path, qtbot: Any) -> None:
     page.use_folder(pictures)
     assert (page.stage, page.blocker()) == (Stage.SEARCHING, "The pictures are being measured.")
-    assert page.can_search == "The pictures are being measured."
+    assert page.cannot_search == "The pictures are being measured."
     qtbot.waitUntil(lambda: page.stage is Stage.SOLVED)
     assert page.blocker() == "Accept the laser planes first."
     assert [pose.used for pose in page.views()] == [True] * 6 + [False]
@@ -139,7 +139,7 @@ def test_cancelling_the_measurement_goes_back_to_where_it_was(
     planes.measuring.cancel_all()
     settled(qtbot, page)
     assert (page.stage, page.work.problem) == (Stage.FOUND, "")
-    assert page.can_search == ""
+    assert page.cannot_search == ""
 
 
 def test_what_cannot_be_calibrated_says_why_in_the_words_of_the_window(
@@ -337,7 +337,7 @@ def test_accepting_is_an_edit_and_a_result(accepted: PlanesPresenter) -> None:
     assert accepted.project.accepted.planes == accepted.candidate
     assert accepted.blocker() == ""
     assert accepted.state.state is State.DONE
-    assert accepted.can_accept == "These laser planes are accepted already."
+    assert accepted.cannot_accept == "These laser planes are accepted already."
     accepted.model.undo_stack.undo()
     assert accepted.project.accepted.planes == ""
     assert stage(accepted) is Stage.SOLVED
@@ -365,7 +365,7 @@ def test_rejecting_what_is_accepted_is_an_edit_that_can_be_undone(accepted: Plan
     accepted.reject()
     assert accepted.project.accepted.planes == ""
     assert stage(accepted) is Stage.REJECTED
-    assert accepted.can_reject == "This calibration is rejected already."
+    assert accepted.cannot_reject == "This calibration is rejected already."
     assert accepted.blocker() == "The laser planes were rejected; accept better ones first."
     accepted.model.undo_stack.undo()
     assert stage(accepted) is Stage.ACCEPTED
@@ -395,7 +395,7 @@ def test_planes_found_but_not_accepted_are_offered_again_when_the_project_is_reo
     found.model.close()
     found.model.open(folder)
     qtbot.waitUntil(lambda: found.stage is Stage.SOLVED)
-    assert (found.candidate, found.can_accept) == (shown, "")
+    assert (found.candidate, found.cannot_accept) == (shown, "")
     assert cast(HandLane, found.bench.measuring).ran.count(jobs.FIND_POSES) == 1
 
 
@@ -452,11 +452,11 @@ def test_planes_whose_file_tells_too_little_are_accepted_again_and_what_rests_on
     accepted.history.refresh()
     settled(qtbot, accepted)
     assert stage(accepted) is Stage.OUTDATED
-    assert (accepted.can_accept, "earlier version" in accepted.blocker()) == ("", True)
+    assert (accepted.cannot_accept, "earlier version" in accepted.blocker()) == ("", True)
     accepted.accept()
     settled(qtbot, accepted)
     assert (accepted.project.accepted.planes, stage(accepted)) == (id_, Stage.ACCEPTED)
-    assert accepted.can_accept == "These laser planes are accepted already."
+    assert accepted.cannot_accept == "These laser planes are accepted already."
     assert left_to_do(accepted.project, accepted.model.results) == ("scan", "gauge", "report")
     assert "laser planes" in accepted.model.states["scan"].sentence
 
@@ -475,10 +475,10 @@ def test_what_cannot_be_kept_is_told_and_can_be_accepted_later(
 ) -> None:
     planes.quick.held = {jobs.ACCEPT_PLANES}
     found.accept()
-    assert found.can_accept
+    assert found.cannot_accept
     planes.quick.fail(InputError("cannot be written, because the disk is full", where="planes.json"))
     assert found.project.accepted.planes == ""
-    assert found.can_accept == ""
+    assert found.cannot_accept == ""
 
 
 # ---- live
@@ -494,7 +494,7 @@ def test_live_poses_are_taken_with_or_without_the_laser_off_as_was_said_last(
     request = live.waiting[0][2][0]
     assert (request.step, request.pairs, request.camera) == ("planes", False, CAMERA)
     assert (page.stage, page.blocker()) == (Stage.LIVE, "Stop the live source when there are enough poses.")
-    assert page.can_search == page.can_accept == page.can_reject == "Stop the live source first."
+    assert page.cannot_search == page.cannot_accept == page.cannot_reject == "Stop the live source first."
     assert page.model.is_recording
     page.live.stop()
     live.finish(LiveEnded(request.folder, 0, 0))

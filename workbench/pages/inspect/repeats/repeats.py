@@ -103,7 +103,7 @@ class InspectRepeats(QObject):
         return self._faces.spec
 
     @property
-    def can_add(self) -> str:
+    def cannot_add(self) -> str:
         """Reason why the thickness shown cannot be added, or ""."""
         return self.buttons().add
 
@@ -125,7 +125,7 @@ class InspectRepeats(QObject):
 
     def add(self) -> None:
         """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""
-        why_not, gauge, view = self.can_add, self._scan.gauge, self._scan.view
+        why_not, gauge, view = self.cannot_add, self._scan.gauge, self._scan.view
         scan = self._model.results.get("scan")
         if why_not or gauge is None or view is None or scan is None:
             self._bench.notices.warning(why_not or tr("Measure the thickness first."))
