@@ -232,7 +232,7 @@ def run_profile(
 @contextmanager
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
     """Open and lock a recording set, with this channel for the laser, and the folder of its results."""
-    work = Workspace.open(open_set(folder).seen_in(channel), out, part)
+    work = Workspace.open(open_set(folder).with_channel(channel), out, part)
     print_cache_note()
     with alone_in(work.out):
         yield work

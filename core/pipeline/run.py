@@ -86,7 +86,7 @@ def run(
         If anything in the set keeps it from being measured; what was finished before stays, whole.
     """
     options = options or Options()
-    recording_set = open_set(set_folder).seen_in(options.channel)
+    recording_set = open_set(set_folder).with_channel(options.channel)
     require_camera(recording_set)
     require_planes(recording_set)
     require_scan(recording_set)

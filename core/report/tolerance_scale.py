@@ -52,11 +52,11 @@ class ToleranceScale:
         half = _ROOM * max(*known, abs(self.deviation) + self.U, 1e-9) if known else 1.0
         return min(max(0.5 * (1 + value / half), 0.0), 1.0)
 
-    def limit_said(self, limit: float, words: Words = ENGLISH) -> str:
+    def limit_text(self, limit: float, words: Words = ENGLISH) -> str:
         """Write a limit: '+0.2 mm'."""
         return f"{words.numeral(f'{limit:+g}')} {self.unit}"
 
-    def deviation_said(self, words: Words = ENGLISH) -> str:
+    def deviation_text(self, words: Words = ENGLISH) -> str:
         """Write the deviation: 'deviation +0.012 mm ± 0.024 mm'."""
         decimals = max(decimals_of(self.U), 0)
         return words(

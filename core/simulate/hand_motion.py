@@ -48,7 +48,7 @@ class HandMotion:
     exposure_s: float = 0.0
 
     @property
-    def seen(self) -> bool:
+    def is_visible(self) -> bool:
         """Whether pictures show the motion."""
         return (self.speed_mm_s > 0 or self.tremor_mm > 0) and (self.readout_s > 0 or self.exposure_s > 0)
 

@@ -144,7 +144,7 @@ def scenario_rig(scenario: Scenario) -> Rig:
         fan_bow=scenario.fan_bow,
         laser=scenario.laser,
     )
-    rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
+    rig = replace(rig, camera=scenario.lens.through_lens(rig.camera))
     if scenario.transport.sheet_deg:
         angle, fade = math.radians(scenario.transport.sheet_deg), math.radians(scenario.transport.edge_deg)
         fan, sweep = (replace(one, end_angle=angle, end_fade=fade) for one in (rig.fan_beam, rig.sweep_beam))
@@ -220,7 +220,7 @@ def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
 def moving_sheets(scenario: Scenario, sheets: Sequence[Sheet]) -> list[tuple[Sheet, ...]]:
     """Compute the sheets of light in the picture of each frame; several for each of `sheets` if the hand moves."""
     motion = HandMotion(scenario.hand_mm_s, scenario.tremor_mm, scenario.readout_ms / 1000, scenario.exposure_ms / 1000)
-    if not motion.seen:
+    if not motion.is_visible:
         return [(sheet,) for sheet in sheets]
     rows, headings = round(FULL_SIZE[1] * scenario.scale), headings_of(len(sheets))
     return [

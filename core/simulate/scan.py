@@ -22,7 +22,7 @@ from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
 from core.simulate.scene.mirrors import mirrored_light
 from core.simulate.scene.scene import Scene, SurfaceMaps, surface_maps
 from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
-from core.simulate.scene.window import hand_hides, window_places, window_seen
+from core.simulate.scene.window import hand_hides, visible_window_share, window_places
 
 LAMP = np.array([-0.35, -0.5, -0.79])
 """Direction (3,) from the scene to the lamp that gives the room's light its shade, in the camera frame."""
@@ -203,7 +203,7 @@ class ScanStage:
         facing = np.maximum(self.maps.normals @ (LAMP / np.linalg.norm(LAMP)).astype(np.float32), 0)
         window = np.radians(self.effects.transport.window_deg)
         if window:
-            facing *= window_seen(self.scene, self.maps, window_places(LAMP, float(window)))
+            facing *= visible_window_share(self.scene, self.maps, window_places(LAMP, float(window)))
             self._lamp_light = self.maps.albedo * (np.float32(grey * LAMP_SHARE) * facing)
         return self._image(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)))
 

@@ -29,7 +29,7 @@ def test_an_angle_is_on_it_in_degrees():
     angle = result(
         value=math.radians(90.5), u=math.radians(0.05), quantity="angle", limits=Limits(math.radians(90), -1, 1)
     )
-    assert ToleranceScale.of(angle).deviation_said() == "deviation +0.50 ° ± 0.10 °"
+    assert ToleranceScale.of(angle).deviation_text() == "deviation +0.50 ° ± 0.10 °"
 
 
 @pytest.mark.parametrize("one", [result(limits=None), result(u=math.inf), result(value=math.nan)])

@@ -10,7 +10,14 @@ from typing import Any, Protocol
 from numpy.typing import NDArray
 
 from core.acquire.channel import Channel
-from core.acquire.drivers.genicam_features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
+from core.acquire.drivers.genicam_features import (
+    TRIGGER,
+    Features,
+    apply,
+    capabilities_of,
+    is_software_triggered,
+    make_grey,
+)
 from core.acquire.drivers.pixel_formats import decode
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
 from core.errors import InputError, WrongValue
@@ -232,7 +239,7 @@ class GenICamSource:
 
     def _start(self, driver: Driver) -> None:
         self._numbers.restart()
-        self._ask, self._ask_again_s = is_asked_for(driver.features), float("-inf")
+        self._ask, self._ask_again_s = is_software_triggered(driver.features), float("-inf")
         driver.start()
 
     def _frame(self, grabbed: Grabbed) -> Frame | None:

@@ -150,7 +150,7 @@ def row_time_us(features: Features) -> float | None:
     return features.number("SensorReadoutTime") / max(features.number("Height"), 1.0) or None
 
 
-def is_asked_for(features: Features) -> bool:
+def is_software_triggered(features: Features) -> bool:
     """Whether each picture must be requested by the command TriggerSoftware."""
     if not (features.has("TriggerMode") and features.has("TriggerSource")):
         return False

@@ -128,7 +128,7 @@ class RecordingSet:
         own = {resolved(path) for place in self.folders.values() for path in (place, place.parent)}
         return resolved(folder) in own
 
-    def seen_in(self, channel: Channel | None) -> RecordingSet:
+    def with_channel(self, channel: Channel | None) -> RecordingSet:
         """Set this channel for the laser in all parts; None changes nothing."""
         if channel is None:
             return self

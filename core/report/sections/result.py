@@ -270,14 +270,14 @@ class ToleranceBar(Flowable):  # type: ignore[misc]
         lean = min(8.0, (high - low) / 2 - 2)  # the two never meet, however narrow the zone is drawn
         for place, limit, share in ((low + lean, scale.lower, 1.0), (high - lean, scale.upper, 0.0)):
             if np.isfinite(limit):
-                draw_words(canvas, (place, below), scale.limit_said(limit, words), SANS, 6.5, share)
+                draw_words(canvas, (place, below), scale.limit_text(limit, words), SANS, 6.5, share)
         if high - low > 45 * mm and len(scale.limits) == 2:
             canvas.setStrokeColor(color(MUTED))
             canvas.setLineWidth(0.5)
             canvas.line(self.x(0), axis - 2.4 * mm, self.x(0), axis + 2.4 * mm)
             draw_words(canvas, (self.x(0), below), words("nominal"), SANS, 6.5, share=0.5)
         canvas.setFillColor(self.look.accent_color)
-        said = scale.deviation_said(words)
+        said = scale.deviation_text(words)
         half = words_width(said, SANS, 6.5) / 2
         middle = float(np.clip(self.x(scale.deviation), half, self.width - half))
         draw_words(canvas, (middle, above), said, SANS, 6.5, share=0.5)

@@ -62,7 +62,7 @@ class LensEffects:
             ),
         )
 
-    def seen_by(self, camera: Camera) -> Camera:
+    def through_lens(self, camera: Camera) -> Camera:
         """Add this lens's third radial coefficient to the camera."""
         if not self.k3:
             return camera

@@ -109,7 +109,7 @@ def laser_light(
     lit = cosine > 0
     v, u, points, towards, rho, cosine = v[lit], u[lit], points[lit], towards[lit], rho[lit], cosine[lit]
     if reached is None:
-        reached = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach).sees
+        reached = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach).visible
     open_sky = reached(points)
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))

@@ -48,7 +48,7 @@ class ShadowCaster(NamedTuple):
         radii = np.array([sphere.radius for sphere in scene.spheres], dtype=np.float64)
         return cls(np.array(emitter), frame, triangles, start, members, centres, radii)
 
-    def sees(self, points: Array) -> NDArray[np.bool_]:
+    def visible(self, points: Array) -> NDArray[np.bool_]:
         """Find which of `points` (N, 3) in mm the emitter sees: (N,) True there."""
         visible: NDArray[np.bool_] = _sees(points, self)
         return visible

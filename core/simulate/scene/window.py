@@ -37,7 +37,7 @@ def window_places(towards: Array, half_angle: float) -> Array:
     return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
 
 
-def window_seen(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
+def visible_window_share(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
     """Compute the share (h, w) of the window at `places` (P, 3) that each pixel's point sees past all objects."""
     hulls = [_hull(mesh.triangles) for mesh in scene.meshes]
     starts = np.cumsum([0, *map(len, hulls)]).astype(np.int64)

@@ -83,7 +83,7 @@ def test_a_difference_shows_nothing_where_a_channel_is_saturated():
 
 
 def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path):
-    recording_set = colour_set(tmp_path / "set", 'channel = "green"\n').seen_in("red-green")
+    recording_set = colour_set(tmp_path / "set", 'channel = "green"\n').with_channel("red-green")
     pictures = PictureReader(recording_set)
     assert [pictures.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + [
         "red-green"
@@ -96,8 +96,8 @@ def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path
 def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):
     found, camera = colour_set(tmp_path / "set"), paper.HALF
     chosen = features_key(PictureReader(found), Options(), camera)
-    assert chosen == features_key(PictureReader(found.seen_in("red")), Options(), camera)
-    assert chosen != features_key(PictureReader(found.seen_in("red-green")), Options(), camera)
+    assert chosen == features_key(PictureReader(found.with_channel("red")), Options(), camera)
+    assert chosen != features_key(PictureReader(found.with_channel("red-green")), Options(), camera)
     assert chosen != features_key(
         PictureReader(replace(found, rig=replace(found.rig, mosaic="RGGB"))), Options(), camera
     )

@@ -142,7 +142,7 @@ def test_faults_of_pictures_are_named_before_a_face_that_is_only_missing(kept, c
     with (
         pytest.raises(InputError) as refused,
         cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), None)),
-        gauge_step.one_face_seen(scan, SimpleNamespace(sweep=np.array([0] * 50 + [FAN] * kept))),
+        gauge_step.single_face_as_cause(scan, SimpleNamespace(sweep=np.array([0] * 50 + [FAN] * kept))),
     ):
         raise OneFace(missing, where="point cloud", todo=Message("x.y", "let the fan cross both faces"))
     assert refused.value.code == code and "only 1 plane face is in view" in str(refused.value)

@@ -18,7 +18,7 @@ from core.simulate.scene.objects import gauge_block
 from core.simulate.scene.scene import Material, Scene, SurfaceMaps, surface_maps
 from core.simulate.scene.stage import table_pose
 from core.simulate.scene.walk import walk
-from core.simulate.scene.window import hand_hides, window_places, window_seen
+from core.simulate.scene.window import hand_hides, visible_window_share, window_places
 
 SMALL = Scenario(scale=0.1, frames=3, noise=0.0, speckle=0.0, texture=0.0)
 RIG = paper_rig(0.25)
@@ -154,7 +154,7 @@ def test_a_window_casts_a_shadow_as_soft_as_it_is_wide():
     maps = surface_maps(scene, paper_rig(0.1).camera)
     edges = []
     for degrees in (1.0, 5.0, 15.0):
-        seen = window_seen(scene, maps, window_places(LAMP, np.radians(degrees)))
+        seen = visible_window_share(scene, maps, window_places(LAMP, np.radians(degrees)))
         edges.append(np.mean((seen > 0.02) & (seen < 0.98)))
         assert seen.min() == 0 or degrees > 5
         assert np.mean(seen[~maps.table]) > 0.8, "the upper face sees all of it"

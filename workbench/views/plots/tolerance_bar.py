@@ -30,7 +30,7 @@ class ToleranceBar(QWidget):
     def set_scale(self, scale: ToleranceScale | None, colour: str) -> None:
         """Show a result in a colour of the theme; nothing where there is no tolerance."""
         self._scale, self._colour = scale, colour
-        self.setAccessibleName("" if scale is None else scale.deviation_said(Words(chosen())))
+        self.setAccessibleName("" if scale is None else scale.deviation_text(Words(chosen())))
         self.update()
 
     def sizeHint(self) -> QSize:
@@ -76,7 +76,7 @@ class ToleranceBar(QWidget):
 
     def _words(self, painter: QPainter, scale: ToleranceScale, middle: float, top: float) -> None:
         """The deviation, above its dot as far as there is room."""
-        said = scale.deviation_said(Words(chosen()))
+        said = scale.deviation_text(Words(chosen()))
         wide = self.fontMetrics().horizontalAdvance(said) + 2
         left = min(max(middle - wide / 2, 0.0), self.width() - wide)
         painter.drawText(QRectF(left, top, wide, self.fontMetrics().height()), int(Qt.AlignmentFlag.AlignCenter), said)
@@ -84,7 +84,7 @@ class ToleranceBar(QWidget):
     def _limits(self, painter: QPainter, scale: ToleranceScale, top: float) -> None:
         """Each limit below its line; the two lean away from each other, and so never meet."""
         for limit in scale.limits:
-            said, place = scale.limit_said(limit, Words(chosen())), scale.share(limit) * self.width()
+            said, place = scale.limit_text(limit, Words(chosen())), scale.share(limit) * self.width()
             wide = self.fontMetrics().horizontalAdvance(said) + 2
             left = place - wide if limit == scale.lower else place
             left = min(max(left, 0.0), self.width() - wide)

@@ -114,7 +114,7 @@ def bar_width(colouring: Colouring | None, font: QFont) -> int:
     return round(max(BAR_WIDTH + 8 + numbers, *(metrics.horizontalAdvance(line) for line in lines)) + 2 * MARGIN)
 
 
-def corner_taken(size: tuple[int, int]) -> list[QRectF]:
+def corner_rects(size: tuple[int, int]) -> list[QRectF]:
     """Return the rectangles of the axes and the scale at the lower left."""
     return [QRectF(0, size[1] - MARGIN - 72, MARGIN + 70, MARGIN + 72), QRectF(84, size[1] - 44, 110, 44)]
 

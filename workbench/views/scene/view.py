@@ -52,7 +52,7 @@ from workbench.views.scene.overlay import (
     NAME_ROOM,
     OverlayColours,
     bar_width,
-    corner_taken,
+    corner_rects,
     paint_handle,
     paint_marker,
     paint_overlay,
@@ -325,7 +325,7 @@ class SceneView(QWidget):
         self._scene.callouts = tuple(callouts)
         self._canvas.update()
 
-    def callouts_seen(self) -> list[tuple[Callout, QPointF, QRectF]]:
+    def visible_callouts(self) -> list[tuple[Callout, QPointF, QRectF]]:
         """List the visible callouts, each with its place and its plate on the screen, in logical px of the canvas."""
         callouts, hidden, size = self._scene.callouts, self._scene.hidden, self._canvas.logical_size
         if not callouts:
@@ -340,7 +340,7 @@ class SceneView(QWidget):
         seen &= True if hidden is None else ~hidden.hides(places)
         shown = np.flatnonzero(seen)
         moved = [callouts[k].moved for k in shown]
-        kept = corner_taken(size) if self._axes else []
+        kept = corner_rects(size) if self._axes else []
         if self._handle is not None:
             x, y = np.nan_to_num(self.screen_positions(self._handle[0][None])[0], nan=-1e6)
             kept += [QRectF(x - 2 * HANDLE_PX, y - 2 * HANDLE_PX, 4 * HANDLE_PX, 4 * HANDLE_PX)]
@@ -602,10 +602,10 @@ class SceneView(QWidget):
         return float(np.hypot(at.x() - x, at.y() - y)) <= HANDLE_REACH * HANDLE_PX
 
     def _callout_under(self, at: QPointF) -> Callout | None:
-        return next((one for one, _, plate in reversed(self.callouts_seen()) if plate.contains(at)), None)
+        return next((one for one, _, plate in reversed(self.visible_callouts()) if plate.contains(at)), None)
 
     def _pull_callout(self, dx: float, dy: float) -> None:
-        for one, place, plate in self.callouts_seen():
+        for one, place, plate in self.visible_callouts():
             if one.name == self._held:
                 to = plate.center() - place + QPointF(dx, dy)
                 self._move_callout(one.name, (to.x(), to.y()))
@@ -721,7 +721,7 @@ class SceneView(QWidget):
         painter.setFont(self.font())
         axes = self._frame if self._axes else None
         paint_overlay(painter, self._scene, self._camera, size, colours, axes=axes, grid_mm=self._grid_mm)
-        paint_callouts(painter, self.callouts_seen(), colours)
+        paint_callouts(painter, self.visible_callouts(), colours)
         if self._handle is not None:
             at, along = self.screen_positions(self._handle[0][None])[0], self._handle_on_screen()
             length = float(np.hypot(*along))

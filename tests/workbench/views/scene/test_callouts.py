@@ -38,7 +38,7 @@ def called(view, qtbot):
 
 
 def seen(view):
-    return {one.name: (at, plate) for one, at, plate in view.callouts_seen()}
+    return {one.name: (at, plate) for one, at, plate in view.visible_callouts()}
 
 
 def test_plates_of_places_side_by_side_hide_neither_each_other_nor_a_place():

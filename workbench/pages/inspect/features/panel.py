@@ -156,7 +156,7 @@ class FeaturesPanel(QWidget):
         shown = (features.plan, results, features.measuring, self._scan.gauge, self._scan.is_thickness_old)
         if shown != self._shown:
             self._shown = shown
-            self._frames, self._datums = words.asked_frames(features.plan), words.datum_frames(features.plan)
+            self._frames, self._datums = words.required_frames(features.plan), words.datum_frames(features.plan)
             rows = [self._feature_row(spec.name, kind_of(spec)) for spec in features.plan.features]
             self.list.set_rows([self._thickness_row(), *rows])
             self._fit_list()

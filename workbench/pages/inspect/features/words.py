@@ -109,7 +109,7 @@ def used(feature: ShownFeature) -> str:
     return tr("{count} points used", count=grouped(feature.used)) if feature.used else ""
 
 
-def asked_frames(plan: InspectionPlan) -> dict[str, Frame]:
+def required_frames(plan: InspectionPlan) -> dict[str, Frame]:
     """Make the feature control frames, by the names of the characteristics that they require."""
     return {
         name: Frame(one.symbol, (f"{one.round}{wording().general(one.zone_mm)}", *one.datums))
@@ -124,6 +124,6 @@ def datum_frames(plan: InspectionPlan) -> dict[str, Frame]:
 
 def frames_of(spec: FeatureSpec, plan: InspectionPlan) -> list[Frame]:
     """Make the frames of a feature: its datum letter, if any, and its requirements on form, orientation and place."""
-    asked, datum = asked_frames(plan), datum_frames(plan).get(spec.name)
+    asked, datum = required_frames(plan), datum_frames(plan).get(spec.name)
     own = [asked[name] for result in results_of(spec) if (name := f"{spec.name} {result}") in asked]
     return own if datum is None else [datum, *own]
