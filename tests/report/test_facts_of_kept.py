@@ -5,20 +5,20 @@ from datetime import UTC, datetime
 
 from core.calibrate.camera.changes import CameraChanges, ParameterChange
 from core.files.project.calibration_store import StoredCalibration
-from core.report.facts.of_kept import change_cells, kept_cameras, kept_planes
+from core.report.facts.of_kept import change_cells, stored_cameras, stored_planes
 from core.report.wording import Words
 
 CAMERA = StoredCalibration("camera", "c1", datetime(2026, 3, 2, 12, 9, tzinfo=UTC), 9, 12, rms_px=0.0421)
 
 
 def test_the_calibration_in_use_is_marked_among_the_kept_ones():
-    first, second = kept_cameras((CAMERA, replace(CAMERA, id="c2")), "c2").texts(Words())
+    first, second = stored_cameras((CAMERA, replace(CAMERA, id="c2")), "c2").texts(Words())
     assert first[1:] == ["0.042", "9 of 12", "c1", ""] and second[-2:] == ["c2", "in use"]
 
 
 def test_light_planes_of_fewer_lines_leave_the_others_cells_empty():
     three = replace(CAMERA, rms_mm=(0.01, 0.02, 0.03), camera_id="c1")
-    table = kept_planes((three, replace(three, rms_mm=(0.04,))), "")
+    table = stored_planes((three, replace(three, rms_mm=(0.04,))), "")
     assert [row[1:4] for row in table.texts(Words())] == [["0.010", "0.020", "0.030"], ["0.040", "", ""]]
     assert all(row[6] == "c1" for row in table.texts(Words()))
 

@@ -20,7 +20,7 @@ from core.model import Camera
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
-from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
+from core.pipeline.steps.kept_features import keep_poses, keep_views, stored_poses, stored_views
 from core.pipeline.steps.planes_step import (
     check_agreement,
     measure_poses,
@@ -59,7 +59,7 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
 
 def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
     """Read the views that `find_views` found in these pictures, if it has not searched others since; else None."""
-    return kept_views(folder, project, PictureReader(project_set(folder, project)), progress)
+    return stored_views(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
@@ -99,7 +99,7 @@ def find_poses(
 
 def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
     """Read the poses that `find_poses` found in these pictures with the accepted camera; else nothing."""
-    return kept_poses(folder, project, PictureReader(project_set(folder, project)), progress)
+    return stored_poses(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_poses(

@@ -110,7 +110,9 @@ def keep_views(project_folder: Path, project: Project, pictures: PictureReader, 
         write_views(_path(project_folder, "camera"), _views_key(project, pictures), seen)
 
 
-def kept_views(project_folder: Path, project: Project, pictures: PictureReader, progress: Progress) -> SeenViews | None:
+def stored_views(
+    project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
+) -> SeenViews | None:
     """Read the stored views, if they are of these pictures and this target."""
     pictures.take_hashes(pictures.recording_set.camera, progress)
     try:
@@ -126,7 +128,7 @@ def keep_poses(project_folder: Path, project: Project, pictures: PictureReader, 
         write_poses(_path(project_folder, "planes"), _poses_key(project, pictures), poses)
 
 
-def kept_poses(
+def stored_poses(
     project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
 ) -> tuple[PoseFeatures, ...]:
     """Read the stored poses, if they are of these pictures, this plate and this camera; else nothing."""

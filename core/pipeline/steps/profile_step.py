@@ -26,7 +26,7 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, check_of_the_day, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
-from core.pipeline.steps.scan.judgement import SectionChange, facts_of, kept_poses_of, section_since
+from core.pipeline.steps.scan.judgement import SectionChange, facts_of, section_since, stored_poses_of
 from core.pipeline.steps.scan.pictures import feature_options, used_frames
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
@@ -100,7 +100,7 @@ def profile_step(
         check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
         logged = found.log("scan")
         change = since_calibration(found, calibration, check, logged.acquisition(found.frames))
-        section, kept = SectionChange(surely=None), kept_poses_of(work, calibration)
+        section, kept = SectionChange(surely=None), stored_poses_of(work, calibration)
         seen: list[Profiles] = []
         steps, pictures = [], []
         stream = log.pictures.stream(paths)

@@ -10,7 +10,7 @@ from pathlib import Path
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
-from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan
+from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan, stored_poses_of
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
@@ -74,7 +74,7 @@ def scan_step(
         change_by = partial(
             since_calibration, recording_set, calibration, checked, logged.acquisition(recording_set.frames)
         )
-        kept = kept_poses_of(work, calibration)
+        kept = stored_poses_of(work, calibration)
         section, of_the_day = (
             section_since(calibration, kept.stripes, features.fan),
             facts_of_the_day(work, calibration),

@@ -37,13 +37,13 @@ class KeptCalibration(Protocol):
     def camera_id(self) -> str: ...
 
 
-def kept_cameras(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
+def stored_cameras(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
     """Make the table of stored cameras; `in_use` is the id of one of them or ""."""
     columns = (_ACCEPTED, Column(CORNERS, "px", 3), Column(label("views")), _ID, _STATE)
     return FactTable(columns, tuple((*_about(one, one.rms_px), plain(one.id), _state(one, in_use)) for one in kept))
 
 
-def kept_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
+def stored_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
     """Make the table of stored light planes, each with the camera it rests on."""
     lines = range(max((len(one.rms_mm) for one in kept), default=0))
     of_lines = (Column(Message("told.rms_of_line", "RMS of line {number}", number=n + 1), "mm", 3) for n in lines)

@@ -39,7 +39,7 @@ from core.pipeline.steps.check_step import check_of_the_day, check_step, measure
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
-from core.pipeline.steps.scan.judgement import kept_poses_of, section_since
+from core.pipeline.steps.scan.judgement import section_since, stored_poses_of
 from core.pipeline.steps.scan.notes import notes_on_focus
 from core.pipeline.steps.scan.part_light import plates_of
 from core.pipeline.steps.scan.pictures import look_at_scan
@@ -336,15 +336,15 @@ def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_
 def test_stripes_much_wider_than_at_the_calibration_are_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
-    assert notes_on_focus(kept_poses_of(work, known), seen) == ()
+    assert notes_on_focus(stored_poses_of(work, known), seen) == ()
     id_ = planes_id(known.fan.fan)
     poses = read_poses(work.path("poses"), id_)
     for share, said in ((1 / 1.4, []), (1 / 1.8, ["scan.check_out_of_focus"])):
         sharp = [replace(p, centrelines=tuple(replace(c, width=share * c.width) for c in p.centrelines)) for p in poses]
         write_poses(work.path("poses"), id_, sharp)
-        assert [note.code for note in notes_on_focus(kept_poses_of(work, known), seen)] == said
+        assert [note.code for note in notes_on_focus(stored_poses_of(work, known), seen)] == said
     work.path("poses").write_bytes(b"damaged")
-    assert kept_poses_of(work, known).notes, "told, and the scan is measured all the same"
+    assert stored_poses_of(work, known).notes, "told, and the scan is measured all the same"
 
 
 def test_of_a_readjusted_fan_the_poses_of_its_calibration_are_kept(unchanged, tmp_path):
@@ -354,13 +354,13 @@ def test_of_a_readjusted_fan_the_poses_of_its_calibration_are_kept(unchanged, tm
     once = moved_again(known, None)
     twice = moved_again(once, once.fan.readjusted)
     for one in (known, once, twice):
-        kept = kept_poses_of(work, one)
+        kept = stored_poses_of(work, one)
         assert len(kept.poses) == RIG.plane_poses
         plates = plates_of(kept, one)
         found, before = (blur_of(plates, known.camera.camera, of.fan.fan) for of in (one, known))
         assert found.at(np.array([520.0])) == pytest.approx(before.at(np.array([520.0])), rel=0.02)
     write_poses(work.path("poses"), planes_id(twice.fan.fan), kept.poses)
-    assert kept_poses_of(work, twice).poses and not kept_poses_of(work, once).poses
+    assert stored_poses_of(work, twice).poses and not stored_poses_of(work, once).poses
 
 
 def moved_again(calibration, before):
@@ -373,7 +373,7 @@ def moved_again(calibration, before):
 def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_the_scan_and_in_u(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
-    assert section_since(known, kept_poses_of(work, known).stripes, seen).surely is False
+    assert section_since(known, stored_poses_of(work, known).stripes, seen).surely is False
     id_, pi = planes_id(known.fan.fan), known.fan.fan.pis[1]
     camera = known.camera.camera
 
@@ -392,7 +392,7 @@ def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_
     assert row.u_mm > 1e-3
     assert gauge.verdict != Verdict.CONFORMING
     work.path("poses").write_bytes(b"damaged")
-    assert section_since(known, kept_poses_of(work, known).stripes, seen).surely is None
+    assert section_since(known, stored_poses_of(work, known).stripes, seen).surely is None
 
 
 def test_a_scan_whose_fan_cannot_be_held_to_its_calibration_proves_no_more_than_one_that_has_changed(

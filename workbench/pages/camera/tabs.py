@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtWidgets import QPushButton, QWidget
 
 from core.messages import capital
-from core.report.facts.of_kept import CHANGE_HEADS, kept_cameras
+from core.report.facts.of_kept import CHANGE_HEADS, stored_cameras
 from core.report.facts.table import FactTable
 from core.report.wording import grouped
 from workbench.language import tr
@@ -162,7 +162,7 @@ class CameraHistoryTab(HistoryTab):
             self._presenter.history.take(path)
 
     def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
-        return kept_cameras(entries, in_use)
+        return stored_cameras(entries, in_use)
 
     def _tip(self) -> str:
         return tr("Measure with the chosen calibration again")

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
-from core.report.facts.of_kept import kept_planes
+from core.report.facts.of_kept import stored_planes
 from core.report.facts.table import FactTable
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
@@ -102,7 +102,7 @@ class PlanesHistoryTab(HistoryTab):
     """Tab with the laser planes accepted before."""
 
     def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
-        return kept_planes(entries, in_use)
+        return stored_planes(entries, in_use)
 
     def _tip(self) -> str:
         return tr("Measure with these laser planes again; undoable")

@@ -183,7 +183,7 @@ def facts_of(
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class KeptPoses:
+class StoredPoses:
     """Stored poses of a fan's calibration, none where they are not stored, and a note if their file is damaged."""
 
     poses: tuple[PoseFeatures, ...] = ()
@@ -195,12 +195,12 @@ class KeptPoses:
         return [pose.centrelines for pose in self.poses]
 
 
-def kept_poses_of(work: Workspace, calibration: Calibration) -> KeptPoses:
+def stored_poses_of(work: Workspace, calibration: Calibration) -> StoredPoses:
     """Read the stored poses of the fan's calibration; those of a re-adjusted fan are from before that."""
     try:
-        return KeptPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
+        return StoredPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
     except InputError as error:  # a scan needs nothing of them
-        return KeptPoses(notes=(error.message,))
+        return StoredPoses(notes=(error.message,))
 
 
 def _planes_of(calibration: Calibration) -> Iterator[str]:

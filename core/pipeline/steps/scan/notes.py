@@ -9,7 +9,7 @@ from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message
 from core.pipeline.steps.check_step import assumed_stability
-from core.pipeline.steps.scan.judgement import Judgement, KeptPoses, Solved
+from core.pipeline.steps.scan.judgement import Judgement, Solved, StoredPoses
 from core.pipeline.steps.scan.part_light import notes_on_part_light
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.scan.features.frames import left_out_notes
@@ -23,7 +23,7 @@ def notes_on_scan(
     calibration: Calibration,
     solved: Solved,
     judgement: Judgement,
-    kept: KeptPoses,
+    kept: StoredPoses,
     light: PartLight | None,
     log: FolderLog,
 ) -> tuple[Message, ...]:
@@ -50,7 +50,7 @@ def notes_on_scan(
     )
 
 
-def notes_on_focus(kept: KeptPoses, fan: Sequence[Centreline]) -> tuple[Message, ...]:
+def notes_on_focus(kept: StoredPoses, fan: Sequence[Centreline]) -> tuple[Message, ...]:
     """Note if the fan's stripes are much wider than in its calibration; none where its poses are not stored."""
     then, now = stripe_width(line for lines in kept.stripes for line in lines), stripe_width(fan)
     note = None if then is None or now is None else other_focus(now, then)

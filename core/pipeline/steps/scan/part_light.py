@@ -10,7 +10,7 @@ from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model import Pose
-from core.pipeline.steps.scan.judgement import KeptPoses, Solved
+from core.pipeline.steps.scan.judgement import Solved, StoredPoses
 from core.pipeline.steps.workspace import Calibration
 from core.scan.network.read_out import row_planes
 from core.scan.part_light import PartLight, blur_of, light_on_part
@@ -28,7 +28,7 @@ def part_light(solved: Solved, plates: Plates) -> PartLight | None:
     return light_on_part(_stripes(solved), scan.cloud, camera, blur)
 
 
-def plates_of(kept: KeptPoses, calibration: Calibration) -> Plates:
+def plates_of(kept: StoredPoses, calibration: Calibration) -> Plates:
     """Make the plates of a calibration from the stored features of its pictures.
 
     A re-adjustment moves the fan by tenths of a mm: how wide a lens at half a metre blurs stripes is as before.
