@@ -37,12 +37,12 @@ def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message
     )
 
 
-def each_once(of_light: Sequence[Between], of_crossings: Sequence[Between]) -> tuple[Between, ...]:
+def merged_movements(of_light: Sequence[Between], of_crossings: Sequence[Between]) -> tuple[Between, ...]:
     """Merge two lists of movements in order; one in both is taken from the fan's light, which sees more frames.
 
     Examples
     --------
-    >>> [tuple(one) for one in each_once([Between(11, 12)], [Between(4, 5), Between(10, 13)])]
+    >>> [tuple(one) for one in merged_movements([Between(11, 12)], [Between(4, 5), Between(10, 13)])]
     [(4, 5), (11, 12)]
     """
     others = (

@@ -19,7 +19,7 @@ from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
-from core.scan.between_frames import Between, between, each_once
+from core.scan.between_frames import Between, between, merged_movements
 from core.scan.causes import causes_of_light
 from core.scan.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
@@ -162,7 +162,7 @@ def reconstruct(
         fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
-        movements=each_once(watched.movements, solved.movements),
+        movements=merged_movements(watched.movements, solved.movements),
         rig_explained=None if solved.explanation is None else solved.explanation.share,
         rows_seen_to_roll=solved.read_out.moves and options.row_time_us is None,
     )

@@ -89,7 +89,7 @@ def finished(step: str, project: Project, results: Mapping[str, Done], at: datet
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
-def made_anew(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
+def with_outdated(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
     """Mark as out of date all `results` that rest on a result of `step` made anew under the same name."""
     anew, results = {_MADE[step]}, dict(results)
     for name in STEPS:

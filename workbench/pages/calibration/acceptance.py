@@ -8,7 +8,7 @@ from typing import Any, Literal
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Project
-from core.files.project.keys import finished, made_anew
+from core.files.project.keys import finished, with_outdated
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.work.jobs import Job
@@ -63,7 +63,7 @@ class Acceptance(QObject):
             self._model.edit(self._words()[0], after)
             results = self._model.results
             if id_ == getattr(project.accepted, self._step):
-                results = made_anew(self._step, results)  # the same numbers, and more is known of them
+                results = with_outdated(self._step, results)  # the same numbers, and more is known of them
             made_from = replace(project, accepted=after.accepted)
             self._model.record_all({**results, self._step: finished(self._step, made_from, results)})
             self.kept.emit()
