@@ -104,14 +104,14 @@ def chosen() -> Language:
     return _chosen
 
 
-def spoken() -> str:
+def language_name() -> str:
     """Return the name of the chosen language."""
     return _chosen.name
 
 
 def printed() -> str:
     """Return the name of the language of reports that state none."""
-    return spoken() if spoken() in languages() else "en"
+    return language_name() if language_name() in languages() else "en"
 
 
 def tr(english: str, /, **values: Any) -> str:

@@ -32,7 +32,7 @@ from core.remaining import COUNTED, USUAL_S, Remaining, in_words, page_of
 from core.translations import languages, own_name
 from workbench import first_measurement
 from workbench.bench import COMPILES_S, Bench
-from workbench.language import spoken, tr
+from workbench.language import language_name, tr
 from workbench.menus import OF_A_PAGE, MenuFacts, Menus, why_not
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
@@ -356,7 +356,7 @@ class MainWindow(QMainWindow):
         start = Path.home() / tr("Trisect quick card.pdf")
         path = ask.choose_file_to_save(self, tr("Quick card"), start, tr("PDF (*.pdf)"))
         if path is not None:
-            name = spoken() if spoken() in languages() else "en"
+            name = language_name() if language_name() in languages() else "en"
             self.bench.run_quick(
                 self,
                 jobs.QUICK_CARD,
@@ -523,7 +523,7 @@ class MainWindow(QMainWindow):
         self.setWindowModified(self.model.is_modified)
 
     def _on_language(self, name: str) -> None:
-        if name == spoken():
+        if name == language_name():
             return
         if self.bench.measuring.current is None and not self.model.is_recording:
             self.projects.leave(partial(self.language_wanted.emit, name))

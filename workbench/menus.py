@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QMessageBox
 from core import __version__
 from core.messages import label
 from core.translations import languages, own_name
-from workbench.language import spoken, tr
+from workbench.language import language_name, tr
 from workbench.refresh import Refresh
 from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
@@ -261,7 +261,7 @@ class Menus(QObject):
         for name in languages():
             action = QAction(own_name(name), group)
             action.setCheckable(True)
-            action.setChecked(name == spoken())
+            action.setChecked(name == language_name())
             action.triggered.connect(lambda _=False, name=name: setattr(self._settings, "language", name))
             menu.addAction(action)
             self.actions[f"language {name}"] = action

@@ -27,7 +27,7 @@ from core.files.project.lock import ProjectLock, lock_owner, take_lock
 from core.files.project.people import Person, Rules, needs_reason, read_rules, refused, with_pin
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
-from workbench.language import spoken
+from workbench.language import language_name
 from workbench.step_state import StepState, step_states
 
 AUTOSAVE_MS = 1000
@@ -147,8 +147,8 @@ class ProjectModel(QObject):
     def states(self) -> Mapping[str, StepState]:
         """State of each step, by its name; computed once for project and language, as every page reads it often."""
         file, language = self._states_of
-        if file is not self._file or language != spoken():
-            self._states, self._states_of = step_states(self.project, self.results), (self._file, spoken())
+        if file is not self._file or language != language_name():
+            self._states, self._states_of = step_states(self.project, self.results), (self._file, language_name())
         return self._states
 
     @property

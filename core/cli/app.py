@@ -102,7 +102,7 @@ def _failed(error: BaseException, words: Sequence[str], interrupts: Interrupts) 
 def _run(words: list[str]) -> None:
     """Run the commands; they leave by SystemExit with their own code."""
     try:
-        command = _commands(language.spoken().name)
+        command = _commands(language.current_language().name)
         language.name_panels()
         sys.exit(command(words, prog_name="trisect", standalone_mode=False))
     except NoArgsIsHelpError:

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from core.cli import output
 from core.cli.bar import bar
-from core.cli.language import spoken, text_of, tr
+from core.cli.language import current_language, text_of, tr
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
 from core.files.recording.recording_set import CHECK
@@ -41,7 +41,9 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
         _print_pictures(plan.pictures)
     rows = [(part, _part_in_words(plan, part)) for part in plan.parts]
     if imported is not None:
-        ways = spoken().joined([tr("{n} as {way}", n=n, way=text_of(way)) for way, n in imported.ways.items()])
+        ways = current_language().joined(
+            [tr("{n} as {way}", n=n, way=text_of(way)) for way, n in imported.ways.items()]
+        )
         rows += [(tr("files"), ways), (tr("written"), f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
     output.print_rows(rows, notes if imported is not None else (*notes, _NOTHING_WRITTEN))
 
@@ -82,7 +84,7 @@ def _part_in_words(plan: ImportPlan, part: str) -> str:
         )
     )
     folders = dict.fromkeys(str(path.parent) for one in pictures for _, path in one.files())
-    joined = spoken().joined(list(folders), "and")
+    joined = current_language().joined(list(folders), "and")
     return tr("{pictures}, {rule}; from {folders}", pictures=counted, rule=plan.rules[part], folders=joined)
 
 

@@ -107,7 +107,7 @@ def _asked_for(words: Sequence[str]) -> str:
     return ""
 
 
-def spoken() -> Language:
+def current_language() -> Language:
     """Return the chosen language."""
     return _spoken
 

@@ -15,7 +15,7 @@ from rich.table import Table
 from core.acquire.channel import Channel
 from core.cli import output, talk
 from core.cli.bar import lines_of, prints_lines
-from core.cli.language import speak_as, spoken, text_of, tr
+from core.cli.language import current_language, speak_as, text_of, tr
 from core.cli.options import ExitCode
 from core.code_cache import note_on_cache
 from core.compiled import FOLDER, is_complete
@@ -252,7 +252,7 @@ def run_sets(
         require_folder(folder)
     print_cache_note()
     aloud = prints_lines() and not executor.startswith(DASK)  # a cluster's workers have nobody who listens
-    measure = partial(measure_aloud, spoken().name, talk.loudness()) if aloud else measure_set
+    measure = partial(measure_aloud, current_language().name, talk.loudness()) if aloud else measure_set
     with executor_of(executor, workers) as pool:
         return run_batch(sets, out, pool, chosen, progress, measure=measure)
 

@@ -16,7 +16,7 @@ from core.calibrate.results import (
     FanCalibration,
     ProposedReadjustment,
 )
-from core.cli.language import spoken, text_of, tr
+from core.cli.language import current_language, text_of, tr
 from core.cli.talk import is_verbose
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
@@ -96,15 +96,15 @@ def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
         table.add_column(title, justify="right")
     total = sum(seconds.values())
     for name, spent in seconds.items():
-        table.add_row(text_of(name), spoken().number(spent, ".2f"), f"{spent / total:.0%}")
+        table.add_row(text_of(name), current_language().number(spent, ".2f"), f"{spent / total:.0%}")
     busy = tr("{n:.1f} processors busy for {seconds:.1f} s", n=total / wall_s, seconds=wall_s)
-    table.add_row(tr("all"), spoken().number(total, ".2f"), busy)
+    table.add_row(tr("all"), current_language().number(total, ".2f"), busy)
     Console(stderr=True, highlight=False).print(table)
 
 
 def words() -> Words:
     """Return the words and numbers of core.report in the chosen language."""
-    return Words(spoken())
+    return Words(current_language())
 
 
 def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from core.cli.bar import bar
-from core.cli.language import spoken, text_of, tr
+from core.cli.language import current_language, text_of, tr
 from core.cli.options import EPILOG, ExitCode, Json, Panel, one_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def script(
     from core.cli.measuring import Shown
     from core.pipeline.project.script import write_script
 
-    path = write_script(project, out, spoken().name)
+    path = write_script(project, out, current_language().name)
     Shown([], {}, files={"script": path}).show(as_json=json)
 
 
@@ -147,7 +147,7 @@ def audit(
     trail = read_trail(project)
     rows = []
     for entry in trail.entries:
-        rows.append((f"{entry.n}  {spoken().time(entry.at, seconds=True)}", _told(entry)))
+        rows.append((f"{entry.n}  {current_language().time(entry.at, seconds=True)}", _told(entry)))
         rows += [("", f"{one.field}: {one.old or '–'} → {one.new or '–'}") for one in entry.changes]
         rows += [("", f"{name}: {digest}") for name, digest in entry.files.items()]
         rows += [("", entry.why)] if entry.why else []
@@ -216,7 +216,7 @@ def _told(entry: Entry) -> str:
     said = tr("{what} by {who} on {host}", what=tr(WHAT_NAMES[entry.what]), who=entry.who, host=entry.host)
     if entry.role not in ROLE_NAMES:
         return said
-    return spoken().joined([said, f"{entry.by} ({tr(ROLE_NAMES[entry.role])})"])
+    return current_language().joined([said, f"{entry.by} ({tr(ROLE_NAMES[entry.role])})"])
 
 
 def _pin(name: str) -> str:

@@ -19,7 +19,7 @@ from tests.workbench.pseudo import FOREIGN, told_past_the_catalogues
 from tests.workbench.test_pseudo_dialogs import ALIKE
 from workbench.app import build_window, speak
 from workbench.bench import Bench
-from workbench.language import choose, joined, named, sentence, sentences, spoken
+from workbench.language import choose, joined, language_name, named, sentence, sentences
 from workbench.main_window import MainWindow
 from workbench.steps import STEPS
 from workbench.work import jobs
@@ -49,7 +49,7 @@ def windows(bench: Bench, qapp: QApplication, qtbot) -> Iterator[list[MainWindow
 
 
 def speaks(windows: list[MainWindow], name: str, count: int) -> bool:
-    return spoken() == name and len(windows) == count
+    return language_name() == name and len(windows) == count
 
 
 def test_the_window_speaks_another_language_at_once_and_shows_the_same_step(windows, bench, qtbot, measured_project):

@@ -14,7 +14,7 @@ from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCharFormat, QTextCursor, QTextDocument
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
-from workbench.language import spoken, tr
+from workbench.language import language_name, tr
 from workbench.views.layouts import enable, keep_focus, resize_on_screen
 
 SIZE = (980, 900)
@@ -35,7 +35,7 @@ def manual_folder() -> Path:
 
 def manual_page(name: str) -> Path:
     """Return a page by its name without an ending, in the window's language if there is one in it."""
-    translated = manual_folder() / spoken() / f"{name}.md"
+    translated = manual_folder() / language_name() / f"{name}.md"
     return translated if translated.is_file() else manual_folder() / f"{name}.md"
 
 

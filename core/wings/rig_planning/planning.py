@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from core.cli.language import spoken
+from core.cli.language import current_language
 from core.cli.measuring import Shown
 from core.errors import InputError
 from core.messages import Message
@@ -35,4 +35,4 @@ def run_plan(
         )
     result = plan(rig, scans=scans, changes=changes, options=options, bounds=bounds, progress=progress)
     files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
-    return Shown(plan_rows(result, Words(spoken())), plan_values(result), files=files)
+    return Shown(plan_rows(result, Words(current_language())), plan_values(result), files=files)

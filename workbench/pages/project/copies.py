@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from core.files.project.next_part import drawn_in_picture
 from core.translations import languages
 from workbench.bench import Bench
-from workbench.language import spoken, tr
+from workbench.language import language_name, tr
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -113,7 +113,7 @@ class ProjectCopies(QObject):
             jobs.WRITE_SCRIPT,
             folder,
             path,
-            spoken() if spoken() in languages() else "en",
+            language_name() if language_name() in languages() else "en",
             label=tr("Writing the script"),
             on_done=lambda done: self._bench.notices.info(tr("The script was written to {path}.", path=done)),
             offers={},
