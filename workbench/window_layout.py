@@ -102,7 +102,7 @@ class LayoutOfScreen:
         self._framed.stop()
 
     def follow(self) -> None:
-        """Start following: the window is shown."""
+        """Start to follow the window from screen to screen: it is shown."""
         handle = self._window.windowHandle()
         if not self._screen and handle is not None:
             self._screen = name_of(self._window.screen())

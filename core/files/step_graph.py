@@ -150,7 +150,7 @@ PAGES = tuple(MAIN)
 
 
 def needed_by(page: str, *, shown: bool = False) -> tuple[str, ...]:
-    """List pages whose results must be there before the main step of a page; and those it shows, if asked for."""
+    """List the pages whose results the main step of a page needs; with `shown`, also those whose results it shows."""
     step = next(step for step in GRAPH if step.name == MAIN[page])
     names = (*step.rests_on, *(step.shows if shown else ()))
     return tuple(dict.fromkeys(other.page for other in IN_PROJECT if other.name in names))

@@ -29,7 +29,7 @@ class LightPlane:
 
     @classmethod
     def from_normal(cls, normal: ArrayLike, d_mm: float) -> LightPlane:
-        """Make the plane normal·X = d_mm."""
+        """Make the plane normal·X = d_mm, with `normal` (3,)."""
         return cls(np.asarray(normal, dtype=np.float64) / d_mm)
 
     @property

@@ -31,7 +31,7 @@ class Pose:
 
     @classmethod
     def from_vector(cls, vector: ArrayLike) -> Pose:
-        """Make a pose of six numbers: rotation vector in rad, translation in mm."""
+        """Make a pose of a `vector` (6,): rotation vector in rad, translation in mm."""
         from scipy.spatial.transform import Rotation
 
         six = np.asarray(vector, dtype=np.float64)

@@ -142,7 +142,7 @@ def irls(
 
 
 def mad_sd(residuals: Array) -> float:
-    """Estimate the standard deviation of residuals about zero by their median absolute value.
+    """Estimate the standard deviation about zero of residuals of any shape by their median absolute value.
 
     Up to half may be outliers.
     """

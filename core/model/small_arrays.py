@@ -212,7 +212,7 @@ def first_above(values: Array, limit: float) -> int:
 
 @inlined()
 def invert(matrix: Array, inverse: Array, size: int) -> None:
-    """Write into `inverse` that of the first `size` rows and columns of a positive definite `matrix`.
+    """Write into `inverse` that of the first `size` rows and columns of a positive definite `matrix` (N, N).
 
     This is overwritten.
 

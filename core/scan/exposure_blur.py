@@ -89,7 +89,7 @@ def _of_lens(square: Array, spread: Array) -> float:
 
 
 def notes_on_blur(blurs: Array) -> tuple[Message, ...]:
-    """Note if the hand moved so fast in many exposures that points are less certain by it."""
+    """Note if the hand moved so fast in many exposures, by `blurs` (F, 2), that points are less certain."""
     blur, at_rest = blurs.T
     known, blurred = np.isfinite(blur), blur > MATTERS * at_rest
     if blurred.sum() < max(1.0, WORTH_A_NOTE * known.sum()):

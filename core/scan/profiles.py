@@ -31,7 +31,7 @@ class Profiles:
 def read_profiles(
     picture: Picture, frame: int, camera: Camera, fan: Fan, options: FeatureOptions | None = None
 ) -> Profiles:
-    """Measure the profiles in a picture of the fan alone.
+    """Measure the profiles in a `picture` (H, W) of the fan alone.
 
     The fan's lines are numbered by their order across the fan; where that leaves a choice, by the depth nearest to
     their neighbours'. A line that is numbered wrongly lies on no face with the others.

@@ -62,7 +62,7 @@ class BoardFit:
         return free_covariance(normal, [view.points for view in flat], cells, freedom, precision)
 
     def shape(self, covariance: Array, camera_parameters: int) -> BoardShape:
-        """Make the shape with its part of such a covariance."""
+        """Make the shape with its part of a `covariance` (F + S, F + S), behind the camera's F parameters."""
         own = np.zeros((len(self.values), len(self.values)))
         own[np.ix_(self.free, self.free)] = covariance[camera_parameters:, camera_parameters:]
         return BoardShape(self.board, self.values, own)

@@ -51,7 +51,7 @@ def covered_cells(uv: Array, image_size: tuple[int, int]) -> NDArray[np.bool_]:
 
 
 def coverage(uv: Array, image_size: tuple[int, int]) -> float:
-    """Compute the share (0 … 1) of `covered_cells`."""
+    """Compute the share (0 … 1) of the cells that hold a point of `uv` (N, 2), as `covered_cells`."""
     return float(covered_cells(uv, image_size).mean())
 
 

@@ -22,7 +22,7 @@ def parameters_of(camera: Camera) -> Array:
 
 
 def camera_of(parameters: Array, image_size: tuple[int, int]) -> Camera:
-    """Make the camera with these ten `parameters`; ValueError when they are no camera's."""
+    """Make the camera with these `parameters` (10,); ValueError when they are no camera's."""
     alpha, beta, gamma, u0, v0 = parameters[:5]
     return Camera(image_size, np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]]), parameters[5:])
 

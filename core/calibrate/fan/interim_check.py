@@ -86,8 +86,9 @@ def check_poses(
 def step_errors(
     poses: Sequence[CheckedPose], camera: Camera, fan: Fan, deviations: Sequence[Deviation], step_mm: float
 ) -> Array:
-    """Compute by how many mm (K,) each deviation makes a step of `step_mm` on the target, where the fan meets it,
-    too high.
+    """Compute by how many mm (K,) each deviation makes a step of `step_mm` on the target too high.
+
+    Where the fan meets it.
     """
     here = Deviation("fan", camera, fan)
     changes = [

@@ -224,7 +224,7 @@ class Observations:
         return np.asarray(whiten @ (state.bow - self.plate.bow), dtype=np.float64), rows
 
     def move(self, state: State, step: Array) -> State:
-        """Change a state by a step of the free unknowns."""
+        """Change a state by a `step` (P,) of the free unknowns."""
         first = state.planes.jacobian.shape[1]
         last = first + self.bows + len(self.free)
         steps: list[NDArray[np.float64]] = list(step[last:].reshape(-1, 6))
@@ -233,7 +233,7 @@ class Observations:
         return State(moved.planes, poses, moved.bow, moved.camera)
 
     def move_common(self, state: State, step: Array) -> State:
-        """Change a state by a step of the free unknowns that all poses have in common."""
+        """Change a state by a `step` (C,) of the free unknowns that all poses have in common."""
         first = state.planes.jacobian.shape[1]
         bow = state.bow + step[first : first + self.bows]
         camera = state.camera.copy()
@@ -241,7 +241,7 @@ class Observations:
         return State(state.planes.moved(step[:first]), state.poses, bow, camera)
 
     def shape(self, bow: Array, covariance: Array) -> BoardShape:
-        """Make the plate's shape with this bow (3 or 0,) and its covariance; flat where it was stated to be."""
+        """Make the plate's shape with this bow (3 or 0,) and covariance (3, 3); flat where it was stated to be."""
         if self.plate is None:
             return BoardShape()
         values, own = np.zeros(len(SHAPE_PARAMETERS)), np.zeros((len(SHAPE_PARAMETERS), len(SHAPE_PARAMETERS)))

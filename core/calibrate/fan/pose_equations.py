@@ -118,7 +118,7 @@ class PoseEquations:
 
 
 def inverse(normal: Array) -> Array:
-    """Invert a normal matrix, scaled to a unit diagonal first because mm, rad and 1/mm differ by orders of size."""
+    """Invert a normal matrix (N, N), scaled to a unit diagonal first, as mm, rad and 1/mm differ by orders of size."""
     scale = np.sqrt(_positive(np.diag(normal)))
     values, vectors = np.linalg.eigh(normal / np.outer(scale, scale))
     values = np.maximum(values, SMALLEST * values[-1])

@@ -99,7 +99,10 @@ def krige(right: Array, left: Array, reach: float) -> Array:
 
 @inlined()
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
-    """Compute y at x = 0 for the choice `change` of `krige`, which is linear in the bins' y."""
+    """Compute y at x = 0 for the choice `change` of `krige`.
+
+    It is linear in the y of bins `right` (N, 4), `left` (M, 4).
+    """
     delta, correlation = _change(change, reach, sigma)
     found, side = new_row(4), new_row(_SIDE)
     _join(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation), side)
@@ -109,7 +112,9 @@ def influence(right: Array, left: Array, reach: float, sigma: float, change: int
 
 @inlined()
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
-    """Compute the log odds of two lines that end at x = 0 over one line; per px² of jump·kink·reach.
+    """Compute the log odds of two lines that end at x = 0, `right` (N, 4) and `left` (M, 4), over one.
+
+    Per px² of jump·kink·reach.
 
     At least three bins on each side. The standard deviation of the curvature at x = 0 is tried like δ here: two lines
     must not be the less likely for having two curvatures.
@@ -143,7 +148,10 @@ def _log_sum(scores: Array) -> float:
 
 @inlined()
 def straight_sigma(right: Array, left: Array) -> float:
-    """Compute the standard uncertainty in px of a straight line in its middle."""
+    """Compute the standard uncertainty in px of a straight line in its middle.
+
+    Of bins `right` (N, 4), `left` (M, 4).
+    """
     ahead, behind = 0.0, 0.0
     for k in range(len(right)):
         ahead += right[k, INFORMATION]

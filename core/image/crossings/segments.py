@@ -164,13 +164,13 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
 
 @inlined()
 def boxes_apart(one: Array, other: Array) -> bool:
-    """Whether the boxes of two runs do not overlap."""
+    """Whether the boxes of two runs, a row (7,) of the table of boxes each, do not overlap."""
     return bool(one[5] < other[3] or other[5] < one[3] or one[6] < other[4] or other[6] < one[4])
 
 
 @inlined()
 def segment_apart(p: Array, q: Array, box: Array) -> bool:
-    """Whether the segment from p to q passes a run's box on one of its sides."""
+    """Whether the segment from p (≥ 2,) to q passes a run's `box` (7,) on one of its sides."""
     return bool(
         max(p[0], q[0]) < box[3] or box[5] < min(p[0], q[0]) or max(p[1], q[1]) < box[4] or box[6] < min(p[1], q[1])
     )
@@ -178,7 +178,7 @@ def segment_apart(p: Array, q: Array, box: Array) -> bool:
 
 @inlined()
 def segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
-    """Whether the segment from p to q cuts the one from r to s; the last point belongs to the next segment."""
+    """Whether the segment from p (≥ 2,) to q cuts the one from r to s; the last point belongs to the next segment."""
     du, dv, eu, ev = q[0] - p[0], q[1] - p[1], s[0] - r[0], s[1] - r[1]
     cross = du * ev - dv * eu
     if cross == 0.0:

@@ -69,7 +69,7 @@ class Piece:
         return np.where(self.usable, 1.0, _UNUSABLE_WEIGHT)
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
-        """Select the usable ones of the points `run` and of their standard uncertainties."""
+        """Select the usable ones of the points `run` (N, ≥ 2) and of their standard uncertainties (N,)."""
         return (run, sigma) if self.usable.all() else (run[self.usable], sigma[self.usable])
 
 
@@ -81,7 +81,7 @@ def estimate_positions(
     settings: StripeSettings,
     noise: NoiseModel,
 ) -> list[Refined]:
-    """Estimate the final positions of the points of all pieces.
+    """Estimate the final positions of the points of all pieces of a `picture` (H, W).
 
     They are the likeliest ones. Steger's, corrected for their biases, stay beside other light, and everywhere if the
     two disagree on the whole. Both are right for a Gaussian; a skewed section pulls both, and the flanks that a

@@ -29,7 +29,7 @@ SMOOTHING = 1.0
 
 
 def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetView:
-    """Find the inner corners of `board` in `picture`; a part of the board is enough.
+    """Find the inner corners of `board` in `picture` (H, W); a part of the board is enough.
 
     Boards printed in OpenCV's pattern before version 4.6 (even number of rows) are recognised too.
 

@@ -48,7 +48,7 @@ _CORNERS = Field("target.inner_corners")
 def detect_checkerboard(
     board: Checkerboard, picture: Picture, name: str = "", camera: Camera | None = None, *, thorough: bool = True
 ) -> TargetView:
-    """Find the inner corners of `board` in `picture`, in the order of `board.points`.
+    """Find the inner corners of `board` in `picture` (H, W), in the order of `board.points`.
 
     Nine corners are found on a reduced picture and grown until the board ends: so a board of another size, and a part
     of the board, are told from no board. Where the quick search does not find it, a `thorough` one goes through more

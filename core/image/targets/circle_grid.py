@@ -37,7 +37,7 @@ MOST_SPOTS = 2
 
 
 def detect_circle_grid(grid: CircleGrid, picture: Picture, name: str = "", camera: Camera | None = None) -> TargetView:
-    """Find the images of the circles' centres in `picture`, in the order of `grid.points`.
+    """Find the images of the circles' centres in `picture` (H, W), in the order of `grid.points`.
 
     An ellipse is fitted to each circle's sub-pixel outline. Its centre is not the image of the circle's centre: under
     perspective it lies off by up to f r² sin θ cos θ / Z² (0.3 px on a usual board). The shift follows from the plane's

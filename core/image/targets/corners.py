@@ -108,7 +108,7 @@ def steps_of(grid: Array) -> tuple[Array, Array]:
 
 
 def contrast_of(picture: Picture, grid: Array) -> float:
-    """Compute the median difference of white and black squares around the corners of `grid`."""
+    """Compute the median difference of white and black squares of `picture` (H, W) around corners `grid` (R, C, 2)."""
     along, down = steps_of(grid)
     levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
     return float(np.nanmedian(np.abs(levels[:, 0] + levels[:, 2] - levels[:, 1] - levels[:, 3])) / 2)
@@ -196,7 +196,7 @@ def right_handed(grid: Array) -> bool:
 
 
 def first_is_black(picture: Picture, grid: Array) -> bool:
-    """Whether the square outside the first corner is black, by the vote of all corners."""
+    """Whether the square outside the first corner of `grid` (R, C, 2) is black, by the vote of all corners."""
     along, down = steps_of(grid)
     levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
     signed = (levels[:, 1] + levels[:, 3] - levels[:, 0] - levels[:, 2]).reshape(grid.shape[:2])

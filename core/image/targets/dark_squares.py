@@ -152,7 +152,7 @@ def clockwise(quad: Array) -> Array:
 
 
 def first_corner(quad: Array) -> int:
-    """Find the index of the corner nearest to the top left of the picture (smallest u + v)."""
+    """Find the index of the corner of `quad` (4, 2) nearest to the top left of the picture (smallest u + v)."""
     return int(np.argmin(quad.sum(axis=1)))
 
 

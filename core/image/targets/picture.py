@@ -20,7 +20,7 @@ _FAINTEST = {np.dtype(np.uint8): 8, np.dtype(np.uint16): 128}
 
 
 def check_exposure(picture: Picture, name: str) -> None:
-    """Check that a picture is neither all black nor all white, nor of one grey.
+    """Check that a picture (H, W) is neither all black nor all white, nor of one grey.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def check_exposure(picture: Picture, name: str) -> None:
 
 
 def grey_range(picture: Picture) -> tuple[float, float]:
-    """Compute the grey levels that leave 0.2 % of the pixels below and above."""
+    """Compute the grey levels that leave 0.2 % of the pixels of a picture (H, W) below and above."""
     step = max(1, min(picture.shape) // 400)
     low, high = level_quantiles(picture[::step, ::step], 0.002, 0.998)
     return low, high
@@ -77,7 +77,10 @@ def level_quantiles(levels: Picture, *shares: float) -> list[float]:
 
 
 def as_8bit(picture: Picture) -> NDArray[np.uint8]:
-    """Convert the picture to 8 bit, stretched to the full range if it is 16 bit or dark; a good 8-bit picture stays."""
+    """Convert a picture (H, W) to 8 bit, stretched to the full range if it is 16 bit or dark.
+
+    A good 8-bit one stays.
+    """
     low, high = grey_range(picture)
     if picture.dtype == np.uint8 and high >= 128:
         return picture
@@ -86,7 +89,7 @@ def as_8bit(picture: Picture) -> NDArray[np.uint8]:
 
 
 def as_refinable(picture: Picture) -> Picture:
-    """Convert the picture to a type that OpenCV's corner refinement takes, grey levels unchanged."""
+    """Convert a picture (H, W) to a type that OpenCV's corner refinement takes, grey levels unchanged."""
     return picture if picture.dtype == np.uint8 else picture.astype(np.float32)
 
 

@@ -64,7 +64,9 @@ def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
 
 
 def followed_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure by how many px the target of `view` moved from picture `before` to `after`, each mark followed alone.
+    """Measure by how many px the target of `view` moved from `before` to `after`, (H, W) each.
+
+    Each mark is followed alone.
 
     The median length of the marks' displacements (Lucas & Kanade, in the pyramid of J.-Y. Bouguet, 2000): far quicker
     than finding the target anew, for movements of a few pixels. A grid that moved by just its spacing looks unmoved
@@ -93,7 +95,9 @@ def _followed(one: Picture, other: Picture, points: NDArray[np.float32], window:
 
 
 def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure by how many px the target of `view` moved from picture `before` to `after`; it is not found in `after`.
+    """Measure by how many px the target of `view` moved from `before` to `after`, (H, W) each.
+
+    It is not found in `after`.
 
     The shift under which most pixels at the target's edges look alike in both pictures, refined by robust least
     squares on the slopes (B. D. Lucas, T. Kanade, An iterative image registration technique, IJCAI 1981) together with

@@ -33,7 +33,10 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 
 def rig_in_its_air(project: Project) -> Rig:
-    """Set the temperatures of the project's rig to that of the air, where the drift per kelvin is stated."""
+    """Set unstated temperatures of check and scan to that of the air.
+
+    Only where one of calibration or a drift is stated.
+    """
     rig, celsius = project.rig, project.info.air_celsius
     air = rig.air
     if air.calibrated is None and rig.drift == NO_DRIFT:

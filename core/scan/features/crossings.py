@@ -93,7 +93,7 @@ class CrossingTable:
         return CrossingTable(**arrays, half_length_px=self.half_length_px)
 
     def renumber(self, number: Index) -> CrossingTable:
-        """Give frame i the number `number[i]`; the fan stays −1."""
+        """Give frame i the number `number[i]` of `number` (F,); the fan stays −1."""
         b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
         return replace(self, a=number[self.a], b=b)
 

@@ -255,7 +255,9 @@ class ReferenceFeatures:
 def read_reference(
     picture: Picture, options: FeatureOptions | None = None, first: ReferenceFeatures | None = None
 ) -> ReferenceFeatures:
-    """Extract the fan's centrelines from a picture with the fan alone; a further exposure uses those of the `first`.
+    """Extract the fan's centrelines from a `picture` (H, W) with the fan alone.
+
+    A further exposure uses those of the `first`.
 
     Raises
     ------

@@ -162,7 +162,7 @@ class Adjustment:
         return irls(self.start() if start is None else start, improve, schedule, settled, watched)
 
     def improve(self, before: Solution, weights: Array) -> Solution:
-        """Solve one round of the Gauss–Helmert model: gains from `before`, equations taken at the adjusted crossings.
+        """Solve one Gauss–Helmert round with `weights` (M,): gains from `before`, at the adjusted crossings.
 
         Taken at the observed crossings they would pull all planes together, because noise in the rays costs less the
         less the planes differ.

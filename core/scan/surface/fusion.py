@@ -123,7 +123,7 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
 
 @compiled()
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
-    """Sort points by their cell, those of −1 left out; also where each of the `cells` begins and ends in that order."""
+    """Sort points by their cell `cell_of` (N,), without those of −1; also where each of the `cells` begins and ends."""
     starts, filled = indices_of(cells + 1, 0), new_indices(cells)
     for i in range(len(cell_of)):
         if cell_of[i] >= 0:

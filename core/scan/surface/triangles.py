@@ -44,7 +44,7 @@ class Triangles:
         return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
 
     def moved(self, rotation: Array, translation: Array) -> Triangles:
-        """Move the surface by X → R X + t."""
+        """Move the surface by X → R X + t, R (3, 3) and t (3,) in mm."""
         return replace(self, corners=self.corners @ rotation.T + translation)
 
 

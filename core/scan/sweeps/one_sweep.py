@@ -80,7 +80,7 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
 def judge_plane(
     pi: Array, covariance: Array, crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes
 ) -> OneSweep:
-    """Judge a plane that the network has given by the sweep's `crossings`: their weights and residuals."""
+    """Judge a plane `pi` (3,) of the network by the sweep's `crossings`: their weights and residuals."""
     equations = _Equations(crossings, geometry, known)
     residuals = equations.residuals(pi, equations.variances(pi))
     weights = tukey_weights(residuals, REJECT_AT)

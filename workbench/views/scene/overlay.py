@@ -86,7 +86,7 @@ def paint_overlay(
     axes: ViewFrame | None,
     grid_mm: float,
 ) -> None:
-    """Paint everything that belongs to the picture, not to a tool.
+    """Paint labels, callouts, colour bar, axes and scale over the scene, but nothing of a tool.
 
     `axes` is the frame whose axes are shown, if they are.
     """

@@ -54,9 +54,7 @@ def with_points_between(run: Array, stride: int) -> Array:
 
 @inlined()
 def cubic_weights(stride: int) -> Array:
-    """Compute Lagrange's weights (stride, 4) of four points for places k/stride of the way from the second to the
-    third.
-    """
+    """Compute Lagrange's weights (stride, 4) of four points for places k/stride between the second and the third."""
     weights = new_table(stride, 4)
     for k in range(stride):
         x = k / stride

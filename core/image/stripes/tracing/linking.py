@@ -302,7 +302,7 @@ def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
 
 @inlined()
 def is_near_point(grid: PointGrid, points: Array, u: float, v: float, reach: int) -> bool:
-    """Whether the pixel of (u, v) is within `reach` px of the pixel of a point in the grid."""
+    """Whether the pixel of (u, v) is within `reach` px of the pixel of one of the `points` (N, ≥ 2) in the grid."""
     last, before = grid
     cell, column, row = _cell(reach), int(u + 0.5), int(v + 0.5)
     rows, columns = last.shape

@@ -49,7 +49,7 @@ class InspectConditions:
 
     @property
     def plan(self) -> InspectionPlan:
-        """Plan that has the conditions."""
+        """Inspection plan of the project, whose conditions these are."""
         return self._features.plan
 
     @property
