@@ -20,7 +20,7 @@ from core.model import Camera
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
-from core.pipeline.steps.kept_features import keep_poses, keep_views, stored_poses, stored_views
+from core.pipeline.steps.kept_features import store_poses, store_views, stored_poses, stored_views
 from core.pipeline.steps.planes_step import (
     check_agreement,
     measure_poses,
@@ -53,7 +53,7 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
     """
     pictures = PictureReader(project_set(folder, project))
     seen = see_views(pictures, progress)
-    keep_views(folder, project, pictures, seen)
+    store_views(folder, project, pictures, seen)
     return seen
 
 
@@ -93,7 +93,7 @@ def find_poses(
     require_planes(pictures.recording_set)
     compile_ahead(progress)
     poses = measure_poses(pictures, camera, progress, project.options.plane_stripe, beside)
-    keep_poses(folder, project, pictures, poses)
+    store_poses(folder, project, pictures, poses)
     return poses
 
 

@@ -36,7 +36,7 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 """The rooms that read a scan's pictures and make features of them."""
 
 
-def kept_features(
+def stored_features(
     earlier: Path | None,
     pictures: PictureReader,
     settings: Options,
@@ -103,7 +103,7 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 """The rooms that read the pictures for a calibration and make features of them."""
 
 
-def keep_views(project_folder: Path, project: Project, pictures: PictureReader, seen: SeenViews) -> None:
+def store_views(project_folder: Path, project: Project, pictures: PictureReader, seen: SeenViews) -> None:
     """Store the views found in the pictures of the camera's target; skipped in a folder that cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
@@ -121,7 +121,7 @@ def stored_views(
         return None  # damaged: the pictures are still there
 
 
-def keep_poses(project_folder: Path, project: Project, pictures: PictureReader, poses: Sequence[PoseFeatures]) -> None:
+def store_poses(project_folder: Path, project: Project, pictures: PictureReader, poses: Sequence[PoseFeatures]) -> None:
     """Store the poses found in the pictures of the plate; skipped in a folder that cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)

@@ -13,7 +13,7 @@ from core.files.recording.recording_set import gather_set
 from core.files.results.scan_features import FEATURES
 from core.pipeline.live import scan as live_scan
 from core.pipeline.live.recorded_features import RecordedFeatures
-from core.pipeline.steps.kept_features import kept_features
+from core.pipeline.steps.kept_features import stored_features
 from core.pipeline.steps.scan.features import crossed_scan
 from core.pipeline.steps.scan.pictures import look_at_scan
 from core.scan.features.extraction import LOOK_AHEAD
@@ -62,7 +62,7 @@ def test_after_a_recording_the_measurement_finds_what_its_frames_show(monkeypatc
     ended = scan(monkeypatch, tmp_path, stage, paced(stage, 30), Window())
     assert ended.recorded > 12
     folder = tmp_path / "scan"
-    kept = kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera)
+    kept = stored_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera)
     assert kept is not None and len(kept.frames) == ended.recorded
     same(kept, looked_at_now(folder, stage.camera))
 
@@ -71,13 +71,13 @@ def test_they_are_not_taken_for_other_pictures_settings_or_camera(monkeypatch, t
     scan(monkeypatch, tmp_path, stage, paced(stage, 24), Window())
     folder = tmp_path / "scan"
     other = replace(stage.camera, distortion=2 * stage.camera.distortion)
-    assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, other) is None
+    assert stored_features(None, PictureReader(recorded(folder)), SETTINGS, other) is None
     excluded = Options(excluded=frozenset({"scan/frame00003.png"}))
-    assert kept_features(None, PictureReader(recorded(folder)), excluded, stage.camera) is None
+    assert stored_features(None, PictureReader(recorded(folder)), excluded, stage.camera) is None
     shutil.copy(folder / "frame00002.png", folder / "frame00003.png")
-    assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
+    assert stored_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
     (folder / FEATURES).write_bytes(b"torn")
-    assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
+    assert stored_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
 
 
 @pytest.mark.filterwarnings("error::pytest.PytestUnhandledThreadExceptionWarning")

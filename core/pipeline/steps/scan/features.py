@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.files.recording.picture_reader import PictureReader
 from core.model import Camera, Fan
-from core.pipeline.steps.kept_features import kept_features
+from core.pipeline.steps.kept_features import stored_features
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
 from core.pipeline.steps.workspace import Calibration, check_size
 from core.progress import Progress, silent
@@ -47,7 +47,7 @@ def scan_features(
         If the reference shows no line of the fan, no frame a sweep, or a picture has another size than the camera's.
     """
     camera = calibration.camera.camera
-    kept = kept_features(earlier, pictures, settings, camera, progress) if seen is None else None
+    kept = stored_features(earlier, pictures, settings, camera, progress) if seen is None else None
     if kept is not None and kept.image_size == camera.image_size:
         return kept
     if seen is None:
