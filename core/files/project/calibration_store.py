@@ -91,7 +91,7 @@ class StoredCalibration:
     __pydantic_config__ = ConfigDict(extra="ignore", strict=True)
 
 
-def keep_camera(
+def store_camera(
     project_folder: Path,
     calibration: CameraCalibration,
     settings: Mapping[str, Any],
@@ -121,7 +121,7 @@ def keep_camera(
     return id_
 
 
-def keep_planes(
+def store_planes(
     project_folder: Path,
     calibration: FanCalibration,
     camera: Camera,

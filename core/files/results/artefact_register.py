@@ -97,7 +97,7 @@ def register_text(artefacts: Iterable[Artefact]) -> str:
     return "\n".join(map(_text, artefacts))
 
 
-def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
+def store_own(artefact: Artefact) -> Mapping[str, Artefact]:
     """Add an artefact to the user's own, behind the others; returns them all.
 
     Raises

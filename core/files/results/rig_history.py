@@ -325,7 +325,7 @@ def read_history(name: str) -> RigHistory:
     return RigHistory(file.rig, file.checks)
 
 
-def keep_check(name: str, check: PastCheck) -> RigHistory:
+def store_check(name: str, check: PastCheck) -> RigHistory:
     """Add a check to the history of the rig called `name` and write it; returns it all.
 
     Raises

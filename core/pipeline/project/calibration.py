@@ -9,7 +9,7 @@ from core.calibrate.camera.views import SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.project.calibration_store import keep_camera, keep_planes, read_stored_camera
+from core.files.project.calibration_store import read_stored_camera, store_camera, store_planes
 from core.files.project.data import Project
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
@@ -79,7 +79,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     recording_set = project_set(folder, project)
     names = {view.name for view in calibration.views}
     inputs = _hashes(recording_set, (path for path in recording_set.camera if recording_set.name_of(path) in names))
-    return keep_camera(folder, calibration, project.options.for_camera.run_settings("camera"), inputs)
+    return store_camera(folder, calibration, project.options.for_camera.run_settings("camera"), inputs)
 
 
 def find_poses(
@@ -151,7 +151,7 @@ def accept_planes(
     settings = plane_run_settings(project.rig, project.options.for_planes)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True
-    return keep_planes(
+    return store_planes(
         folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(recording_set, pictures)
     )
 

@@ -11,7 +11,7 @@ from core.errors import InputError
 from core.files.atomic import make_folder, write_bytes
 from core.files.exchange.opencv_calibration import read_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
-from core.files.project.calibration_store import IMPORTED, keep_camera
+from core.files.project.calibration_store import IMPORTED, store_camera
 from core.files.project.data import Project, ReportChoices
 from core.files.project.folder import can_be_saved, results_folder, stored_source
 from core.files.project.report_template import read_report_template
@@ -199,7 +199,7 @@ def keep_imported_camera(folder: Path, project: Project, path: Path) -> str:
     The caller makes it the accepted one.
     """
     place = resolved(path)
-    return keep_camera(folder, _read_camera(path), {IMPORTED: place.as_posix()}, {path.name: file_hash(path)})
+    return store_camera(folder, _read_camera(path), {IMPORTED: place.as_posix()}, {path.name: file_hash(path)})
 
 
 def _read_camera(path: Path) -> CameraCalibration:

@@ -12,12 +12,12 @@ from core.files.folder_lock import alone_in
 from core.files.project.calibration_store import (
     FOLDER,
     READJUSTED_FROM,
-    keep_planes,
     put_in_place,
     read_stored,
     read_stored_camera,
     read_stored_planes,
     read_stored_poses,
+    store_planes,
 )
 from core.files.project.data import Project
 from core.files.project.folder import results_folder, source_folder
@@ -149,7 +149,7 @@ def accept_readjustment(
         )
     camera = read_stored_camera(folder, project.accepted.camera)
     before = read_stored(folder, "planes", project.accepted.planes)
-    return keep_planes(
+    return store_planes(
         folder,
         proposed.fan,
         camera.camera,

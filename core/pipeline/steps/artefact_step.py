@@ -12,7 +12,7 @@ from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import AGAIN, InspectionFile, read_inspection
-from core.files.results.rig_history import PastCheck, keep_check
+from core.files.results.rig_history import PastCheck, store_check
 from core.files.results.run_file import RunRecord
 from core.files.results.scan_file import read_scan
 from core.findings.proof import Doubt
@@ -64,7 +64,7 @@ def artefact_step(
     ids = (calibration.id, frames_id(recording_set, work.record()))
     outside = history_of(recording_set.rig, calibration.id).beyond(PastCheck.of_measured(check, when, ids, celsius))
     check = replace(check, outside=outside)
-    keep_check(history_name(recording_set.rig, calibration.id), PastCheck.of_measured(check, when, ids, celsius))
+    store_check(history_name(recording_set.rig, calibration.id), PastCheck.of_measured(check, when, ids, celsius))
     return check
 
 

@@ -38,7 +38,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
-from core.files.results.rig_history import PastCheck, keep_check
+from core.files.results.rig_history import PastCheck, store_check
 from core.findings.table import note_of
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
@@ -206,7 +206,7 @@ def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSe
 def _kept(recording_set: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
     """Keep a check in the rig's history; what that says of it, or why it could not be kept."""
     try:
-        history = keep_check(history_name(recording_set.rig, past.calibration_id), past)
+        history = store_check(history_name(recording_set.rig, past.calibration_id), past)
     except InputError as error:
         return (Message("check.not_kept", "The check is not in the rig's history: {reason}", reason=error.message),)
     outside = history.beyond(past)

@@ -13,13 +13,13 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.project.calibration_store import (
     history,
-    keep_camera,
-    keep_planes,
     put_in_place,
     read_stored,
     read_stored_camera,
     read_stored_planes,
     read_stored_poses,
+    store_camera,
+    store_planes,
 )
 from core.files.project.data import Accepted
 from core.files.recording.features_file import read_poses
@@ -52,7 +52,7 @@ def names_in(folder):
 
 
 def test_a_kept_camera_comes_back_by_its_id(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options().run_settings("camera"))
+    kept = store_camera(tmp_path, camera, Options().run_settings("camera"))
     assert kept == camera_id(camera.camera)
     assert camera_id(read_stored_camera(tmp_path, kept).camera) == kept
     write_camera(tmp_path / "camera.json", camera)
@@ -60,7 +60,7 @@ def test_a_kept_camera_comes_back_by_its_id(tmp_path, camera):
 
 
 def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
-    kept = keep_planes(tmp_path, fan, camera.camera, POSES)
+    kept = store_planes(tmp_path, fan, camera.camera, POSES)
     assert kept == planes_id(fan.fan)
     assert planes_id(read_stored_planes(tmp_path, kept, camera.camera).fan) == kept
     back = read_stored_poses(tmp_path, kept)
@@ -73,9 +73,9 @@ def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
 def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, other_camera, fan):
     assert history(tmp_path) == ()
     begun = datetime.now(UTC)
-    one = keep_camera(tmp_path, camera, Options().run_settings("camera"))
-    lines = keep_planes(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
-    other = keep_camera(
+    one = store_camera(tmp_path, camera, Options().run_settings("camera"))
+    lines = store_planes(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
+    other = store_camera(
         tmp_path,
         replace(other_camera, cross_validation_mm=0.02),
         Options(excluded=frozenset({"camera/b.png"})).run_settings("camera"),
@@ -96,7 +96,7 @@ def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, othe
 
 
 def test_light_planes_kept_by_an_earlier_version_under_the_name_of_the_laser_are_in_the_history(tmp_path, camera, fan):
-    id_ = keep_planes(tmp_path, fan, camera.camera, POSES)
+    id_ = store_planes(tmp_path, fan, camera.camera, POSES)
     about = tmp_path / "calibrations" / f"planes-{id_}.kept.json"
     about.write_text(about.read_text().replace('"kind": "planes"', '"kind": "fan"'))
     assert '"fan"' in about.read_text()
@@ -106,20 +106,20 @@ def test_light_planes_kept_by_an_earlier_version_under_the_name_of_the_laser_are
 
 
 def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
-    one = keep_camera(tmp_path, camera, Options().run_settings("camera"))
-    other = keep_camera(tmp_path, other_camera, Options().run_settings("camera"))
+    one = store_camera(tmp_path, camera, Options().run_settings("camera"))
+    other = store_camera(tmp_path, other_camera, Options().run_settings("camera"))
     assert one != other
-    assert keep_camera(tmp_path, camera, Options().run_settings("camera")) == one
+    assert store_camera(tmp_path, camera, Options().run_settings("camera")) == one
     assert [entry.id for entry in history(tmp_path)] == [one, other]
 
 
 def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(tmp_path, camera, fan):
-    kept_id = keep_planes(tmp_path, fan, camera.camera, POSES)
+    kept_id = store_planes(tmp_path, fan, camera.camera, POSES)
     (entry,) = history(tmp_path)
     assert not entry.facts_known, "as of an earlier version"
     every = np.zeros((3 * fan.fan.lines, 10))
     known = replace(fan, converged=True, points_off_alike=None, flatness_assumed=False, by_camera=every)
-    assert keep_planes(tmp_path, known, camera.camera, POSES) == kept_id
+    assert store_planes(tmp_path, known, camera.camera, POSES) == kept_id
     (entry,) = history(tmp_path)
     assert entry.facts_known, "and that its few poses leave one of them open"
     assert read_stored_planes(tmp_path, kept_id, camera.camera).converged is True
@@ -128,7 +128,7 @@ def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(
 
 
 def test_a_calibration_that_was_taken_away_is_not_in_the_history(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options().run_settings("camera"))
+    kept = store_camera(tmp_path, camera, Options().run_settings("camera"))
     (tmp_path / "calibrations" / f"camera-{kept}.json").unlink()
     assert history(tmp_path) == ()
     with pytest.raises(InputError, match=f"the calibration {kept} is not in the project; calibrate again"):
@@ -149,12 +149,12 @@ def test_a_calibration_half_kept_is_none(tmp_path, camera, monkeypatch):
 
     monkeypatch.setattr(Path, "replace", full)
     with pytest.raises(InputError, match="the disk is full"):
-        keep_camera(tmp_path, camera, Options().run_settings("camera"))
+        store_camera(tmp_path, camera, Options().run_settings("camera"))
     assert history(tmp_path) == ()
 
 
 def test_a_damaged_entry_is_named(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options().run_settings("camera"))
+    kept = store_camera(tmp_path, camera, Options().run_settings("camera"))
     about = tmp_path / "calibrations" / f"camera-{kept}.kept.json"
     tables = json.loads(about.read_text())
     about.write_text(json.dumps({**tables, "kept_at": "long ago"}))
@@ -167,8 +167,8 @@ def test_a_damaged_entry_is_named(tmp_path, camera):
 
 def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
     kept, lines = (
-        keep_camera(tmp_path, camera, Options().run_settings("camera")),
-        keep_planes(tmp_path, fan, camera.camera, POSES),
+        store_camera(tmp_path, camera, Options().run_settings("camera")),
+        store_planes(tmp_path, fan, camera.camera, POSES),
     )
     for name, key in ((f"camera-{kept}.json", "matrix"), (f"planes-{lines}.json", "planes")):
         path = tmp_path / "calibrations" / name
@@ -187,12 +187,12 @@ def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
 def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other_camera, fan, other_fan):
     results = tmp_path / "results"
     one = Accepted(
-        keep_camera(tmp_path, camera, Options().run_settings("camera")),
-        keep_planes(tmp_path, fan, camera.camera, POSES),
+        store_camera(tmp_path, camera, Options().run_settings("camera")),
+        store_planes(tmp_path, fan, camera.camera, POSES),
     )
     other = Accepted(
-        keep_camera(tmp_path, other_camera, Options().run_settings("camera")),
-        keep_planes(tmp_path, other_fan, other_camera.camera, POSES[:1]),
+        store_camera(tmp_path, other_camera, Options().run_settings("camera")),
+        store_planes(tmp_path, other_fan, other_camera.camera, POSES[:1]),
     )
     for accepted, calibration, lines in ((one, camera, fan), (other, other_camera, other_fan), (one, camera, fan)):
         put_in_place(tmp_path, accepted, results)
@@ -209,8 +209,8 @@ def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other
 
 def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
     accepted = Accepted(
-        keep_camera(tmp_path, camera, Options().run_settings("camera")),
-        keep_planes(tmp_path, fan, camera.camera, POSES),
+        store_camera(tmp_path, camera, Options().run_settings("camera")),
+        store_planes(tmp_path, fan, camera.camera, POSES),
     )
     put_in_place(tmp_path, accepted, tmp_path / "results")
     before = {path: path.stat().st_ino for path in (tmp_path / "results").iterdir()}
@@ -225,9 +225,9 @@ def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
 def test_nothing_is_put_in_place_unless_both_are_accepted_and_belong_together(
     tmp_path, camera, other_camera, fan, other_fan
 ):
-    one = keep_camera(tmp_path, camera, Options().run_settings("camera"))
-    other = keep_camera(tmp_path, other_camera, Options().run_settings("camera"))
-    lines = keep_planes(tmp_path, fan, camera.camera, POSES)
+    one = store_camera(tmp_path, camera, Options().run_settings("camera"))
+    other = store_camera(tmp_path, other_camera, Options().run_settings("camera"))
+    lines = store_planes(tmp_path, fan, camera.camera, POSES)
     results = tmp_path / "results"
     for accepted, said in (
         (Accepted("", lines), "no calibration of the camera is accepted yet"),

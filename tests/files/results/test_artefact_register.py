@@ -9,9 +9,9 @@ from core.files.results.artefact_register import (
     REGISTER,
     artefact_named,
     change_own,
-    keep_own,
     own_register,
     read_register,
+    store_own,
 )
 from core.files.results.rig_history import own_folder
 from core.study.artefact_check import Artefact
@@ -62,10 +62,10 @@ def test_an_artefact_is_added_to_the_users_own_after_what_stands_there(before):
         path.write_text(before)
     known = dict(own_register())
     step = Artefact('step "10"', 10.0, 5e-05, 3.0, "", date(2027, 6, 30))
-    assert keep_own(step) == own_register() == {**known, step.id: step}
+    assert store_own(step) == own_register() == {**known, step.id: step}
     assert ("# of the lab" in path.read_text()) == ("#" in before), "what was written by hand is kept"
     with pytest.raises(InputError, match=r"there is an artefact step .* already"):
-        keep_own(step)
+        store_own(step)
 
 
 STEP = '[[artefact]]\nid = "step 10"\nkind = "step"\nvalue_mm = 10.0\nU_mm = 0.001\n'

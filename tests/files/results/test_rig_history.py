@@ -9,7 +9,7 @@ from core.calibrate.change import DEFAULT_STABILITY, STABLE
 from core.calibrate.rig_spread import FACTORS
 from core.cli.output import history_rows
 from core.errors import InputError
-from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
+from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, read_history, store_check
 from core.findings.proof import Doubt
 from core.study.artefact_check import Artefact, ArtefactCheck
 from core.study.control_chart import FEWEST
@@ -25,9 +25,9 @@ def later(days, error_mm=0.01, **more):
 
 
 def test_checks_are_kept_in_the_order_of_their_pictures():
-    keep_check("bench", later(2))
-    keep_check("bench", FIRST)
-    history = keep_check("bench", PastCheck.of(nowhere()))
+    store_check("bench", later(2))
+    store_check("bench", FIRST)
+    history = store_check("bench", PastCheck.of(nowhere()))
     assert [one.taken_at for one in read_history("bench").checks] == sorted(one.taken_at for one in history.checks)
     last = read_history("bench").checks[-1]
     assert repr(last) == repr(later(2)), "from Python 3.13 on records with NaN in a field are not equal"
@@ -35,23 +35,23 @@ def test_checks_are_kept_in_the_order_of_their_pictures():
 
 
 def test_the_same_pictures_checked_again_are_one_check():
-    keep_check("bench", FIRST)
-    history = keep_check("bench", replace(FIRST, p=0.2))
+    store_check("bench", FIRST)
+    history = store_check("bench", replace(FIRST, p=0.2))
     assert [one.p for one in history.checks] == [0.2]
-    assert len(keep_check("bench", replace(FIRST, calibration_id="another")).checks) == 2
+    assert len(store_check("bench", replace(FIRST, calibration_id="another")).checks) == 2
 
 
 def test_a_damaged_history_is_named():
-    keep_check("bench", FIRST)
+    store_check("bench", FIRST)
     history_file("bench").write_text('{"rig": "bench", "checks": [{"p": 2}]}')
     with pytest.raises(InputError, match=r"bench\.json.*taken_at"):
         read_history("bench")
     with pytest.raises(InputError):
-        keep_check("bench", FIRST)
+        store_check("bench", FIRST)
 
 
 def test_what_a_dataclass_of_a_file_must_be_is_told_in_words():
-    keep_check("bench", FIRST)
+    store_check("bench", FIRST)
     short = history_file("bench").read_text().replace('"likelihoods": null', '"likelihoods": [1]')
     for text, wrong in (
         (short, r"checks\[0\]\.likelihoods is \[1\], not \d+ finite numbers"),
@@ -97,7 +97,7 @@ def test_an_artefact_has_a_chart_of_its_own():
     history = RigHistory("bench", pictures).added(block)
     assert history.like(block) == (block,)
     assert not history.chart(block).own and history.chart(later(11)).own
-    keep_check("bench", block)
+    store_check("bench", block)
     assert repr(read_history("bench").checks) == repr((block,))
 
 
@@ -153,7 +153,7 @@ def measured_block(days: float, measured_mm: float, block: Artefact = BLOCK) -> 
 
 
 def test_an_artefact_is_kept_with_what_its_certificate_says():
-    keep_check("bench", measured_block(1, 50.004))
+    store_check("bench", measured_block(1, 50.004))
     (kept,) = read_history("bench").checks
     assert repr(kept) == repr(measured_block(1, 50.004))
     told = kept.of_artefact
@@ -166,7 +166,7 @@ def test_an_artefact_is_kept_with_what_its_certificate_says():
 def test_a_step_is_kept_with_its_kind_and_what_was_measured_of_it():
     step = replace(BLOCK, id="S 20", value_mm=20.0, kind="step")
     measured = ArtefactCheck(step, 20.003, 0.009, FIRST.taken_at.astimezone().date(), "stairs height 2", doubts=MOVED)
-    keep_check("bench", PastCheck.of_measured(measured, FIRST.taken_at, (FIRST.calibration_id, "frames"), None))
+    store_check("bench", PastCheck.of_measured(measured, FIRST.taken_at, (FIRST.calibration_id, "frames"), None))
     (kept,) = read_history("bench").checks
     assert kept.of_artefact is not None
     assert (kept.of_artefact.artefact, kept.of_artefact.characteristic) == (step, "stairs height 2")
@@ -188,7 +188,7 @@ def test_of_each_artefact_the_check_nearest_in_time_counts():
 
 
 def test_a_day_that_there_is_not_is_told():
-    keep_check("bench", measured_block(1, 50.004))
+    store_check("bench", measured_block(1, 50.004))
     text = history_file("bench").read_text().replace("2028-03-01", "2028-13-01")
     history_file("bench").write_text(text)
     with pytest.raises(InputError, match=r"checks\[0\]\.due is .2028-13-01., not a date"):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.project.calibration_store import history, keep_camera, keep_planes
+from core.files.project.calibration_store import history, store_camera, store_planes
 from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
 from core.files.results.check_file import read_check
@@ -44,8 +44,8 @@ def turned(tmp_path_factory):
 def opened(made, folder):
     """A project on that set with its calibrations accepted."""
     known = read_calibration(made / "out")
-    camera = keep_camera(folder, known.camera, Options().run_settings("camera"))
-    fan = keep_planes(folder, known.fan, known.camera.camera, ())
+    camera = store_camera(folder, known.camera, Options().run_settings("camera"))
+    fan = store_planes(folder, known.fan, known.camera.camera, ())
     project = project_from_set(made / "set", "Block")
     return replace(project, accepted=Accepted(camera, fan))
 

@@ -23,7 +23,7 @@ from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.planes_file import planes_id
-from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
+from core.files.results.rig_history import QUIET_DAYS, history_file, read_history, store_check
 from core.files.results.scan_file import read_scan
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.causes import Cause
@@ -510,7 +510,7 @@ def charted(checked, work, tmp_path, days=8, last=1):
     when = taken_at(work.recording_set.frames) - timedelta(hours=1)
     for day in range(days):
         at = when - timedelta(days=last + day)
-        keep_check(name, replace(one, calibration_id=name, pictures_id=f"day {day}", taken_at=at))
+        store_check(name, replace(one, calibration_id=name, pictures_id=f"day {day}", taken_at=at))
     change = changed_since(work.recording_set, work.calibration())
     of_change = [one for one in change.deviations if "change" in one.source]
     (source,) = {one.source for one in of_change}

@@ -13,7 +13,7 @@ from core.calibrate.results import FanCalibration
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Validity, default_rig
 from core.files.recording.set_listing import PlanePair
-from core.files.results.rig_history import PastCheck, history_file, keep_check
+from core.files.results.rig_history import PastCheck, history_file, store_check
 from core.files.results.run_file import RunRecord
 from core.findings.proof import OF_SCAN
 from core.model import Fan, LightPlane
@@ -43,7 +43,7 @@ def recorded(tmp_path, validity=NO_LIMIT, calibrated_days=10.0, made_at=None):
 
 def checked(days, p=0.4):
     """A check so many days before NOON."""
-    keep_check(ID, replace(PastCheck.of(check(p)), taken_at=NOON - timedelta(days=days), pictures_id=f"{days}"))
+    store_check(ID, replace(PastCheck.of(check(p)), taken_at=NOON - timedelta(days=days), pictures_id=f"{days}"))
 
 
 def doubts(work, calibration):
@@ -81,7 +81,7 @@ def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed", of=""
         NOON - timedelta(days=days), ID, f"artefact {days}", verdict, 0.5, step_mm, error_mm=error_mm,
         unseen_mm=0.06, stated_mm=0.0, artefact="GB 50", e_n=error_mm / 0.06, characteristic=of,
     )  # fmt: skip
-    keep_check(ID, past)
+    store_check(ID, past)
 
 
 def size_doubted(work, calibration):

@@ -10,7 +10,7 @@ from PySide6.QtCore import Qt
 from core.errors import InputError
 from core.files.project.folder import read_project
 from core.files.project.keys import finished
-from core.files.results.artefact_register import keep_own, own_register
+from core.files.results.artefact_register import own_register, store_own
 from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.workbench.hand_lane import HandLane
 from workbench.notices import Level
@@ -85,7 +85,7 @@ def test_a_thickness_that_is_out_of_date_is_not_compared(measured):
 
 
 def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):
-    keep_own(BLOCK)
+    store_own(BLOCK)
     model = measured.presenter.model
     model.edit("add", replace(model.project, artefacts=(LAPSED,)))
     dialog = opened(measured, qtbot)
@@ -101,7 +101,7 @@ def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):
 
 
 def test_the_thickness_is_compared_with_the_chosen_artefact_and_the_card_shows_the_result(measured, qtbot):
-    keep_own(BLOCK)
+    store_own(BLOCK)
     bench = measured.presenter.bench
     lane, quick = cast(HandLane, bench.measuring), cast(HandLane, bench.quick)
     dialog = opened(measured, qtbot)
@@ -125,7 +125,7 @@ def test_the_thickness_is_compared_with_the_chosen_artefact_and_the_card_shows_t
 
 
 def test_a_comparison_that_fails_says_why_and_can_be_made_again(measured, qtbot):
-    keep_own(BLOCK)
+    store_own(BLOCK)
     dialog = opened(measured, qtbot)
     dialog.table.set_current_row(0)
     press(dialog.compare)
@@ -175,8 +175,8 @@ def test_a_sphere_is_compared_with_a_diameter_of_the_features_that_can_be_chosen
     cast(HandLane, bench.quick).answers[jobs.COMPARABLE_LENGTHS] = lambda _: {
         "block": ("",), "sphere": ("ball diameter", "other diameter"), "step": (),
     }  # fmt: skip
-    keep_own(replace(BLOCK, id="B 25", kind="sphere"))
-    keep_own(replace(BLOCK, id="S 20", kind="step"))
+    store_own(replace(BLOCK, id="B 25", kind="sphere"))
+    store_own(replace(BLOCK, id="S 20", kind="step"))
     dialog = opened(measured, qtbot)
     dialog.table.set_current_row(0)
     assert dialog.compare.toolTip() == "Measure the artefact first, like a part.", "no features are measured yet"
@@ -224,7 +224,7 @@ def test_an_artefact_stays_in_its_register_where_it_is_changed(measured, qtbot):
 
 
 def test_an_artefact_of_the_users_own_is_changed_and_removed_once_that_is_confirmed(measured, qtbot, monkeypatch):
-    keep_own(BLOCK)
+    store_own(BLOCK)
     dialog = opened(measured, qtbot)
     dialog.table.set_current_row(0)
     dialog.form.set_values({"value_mm": 50.5})
@@ -253,7 +253,7 @@ def test_an_artefact_of_the_users_own_is_changed_and_removed_once_that_is_confir
     ],
 )
 def test_what_is_wrong_with_an_artefact_is_said_at_its_field_and_nothing_is_added(measured, qtbot, field, value, said):
-    keep_own(LAPSED)
+    store_own(LAPSED)
     dialog = opened(measured, qtbot)
     fill(dialog, **{field: value})
     assert dialog.form.help_of(field) == said
