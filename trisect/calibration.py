@@ -12,7 +12,7 @@ from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera import calibration
 from core.calibrate.camera.options import CameraOptions
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import ExtraPictures, measure_plane_pose
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.image.stripes.noise import UNCOMPRESSED, Compression
@@ -182,7 +182,7 @@ def calibrate_fan(
             todo=Message("api.advice_laser", "give one line or more, and the angle in rad, as radians(5.0)"),
         )
     known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
-    poses, beside = [], Beside(None, compression)
+    poses, beside = [], ExtraPictures(None, compression)
     for number, (on, off) in enumerate(pairs):
         progress("plane poses", number, len(pairs))
         name = f"pose {number + 1}"

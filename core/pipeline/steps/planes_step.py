@@ -9,7 +9,7 @@ from functools import partial
 from core.acquire.channel import PLAIN_CHANNELS, is_difference
 from core.acquire.grey import has_colours, to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import ExtraPictures, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
@@ -176,7 +176,7 @@ def _pose_features(
     camera: Camera,
     stripe: StripeSettings | None,
     pair: PlanePair,
-    read: tuple[Picture, Picture | None, Beside],
+    read: tuple[Picture, Picture | None, ExtraPictures],
     progress: Progress,
 ) -> PoseFeatures:
     on, off, beside = read
@@ -189,7 +189,7 @@ def _pose_features(
         return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, beside)
 
 
-def _beside(pictures: PictureReader, pair: PlanePair, lit: Picture, unlit: Picture | None) -> Beside:
+def _beside(pictures: PictureReader, pair: PlanePair, lit: Picture, unlit: Picture | None) -> ExtraPictures:
     """What there is of a pose beside its two pictures, which are `lit` and `unlit` as their files have them."""
     part = pictures.recording_set.part_of(pair.on)
     channel = pictures.laser_channel(part).channel
@@ -201,9 +201,9 @@ def _beside(pictures: PictureReader, pair: PlanePair, lit: Picture, unlit: Pictu
     sites = pictures.sites(part)
     others = _other_channels(pictures, pair, lit, unlit) if part == "planes" else {}
     if not is_difference(channel) and sites == ALL_SITES:
-        return Beside(None, compression, further, others=others)
+        return ExtraPictures(None, compression, further, others=others)
     dark = pictures.read_target(pair.off) if pair.off is not None else None
-    return Beside((pictures.read_target(pair.on), dark), compression, further, sites, others)
+    return ExtraPictures((pictures.read_target(pair.on), dark), compression, further, sites, others)
 
 
 def _other_channels(

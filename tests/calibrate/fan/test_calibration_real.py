@@ -12,7 +12,7 @@ import pytest
 from core.acquire.channel import Channel
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import ExtraPictures, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.files.pictures import compression_of
@@ -54,7 +54,7 @@ def features(channel: int, poses: range, others: Mapping[Channel, int] = Mapping
         }
         on, off = one_channel(lit, channel), one_channel(dark, channel)
         target = CircleGrid(7, 7, 37.5)
-        found.append(measure_plane_pose(f"light{number}", on, off, target, beside=Beside(others=beside)))
+        found.append(measure_plane_pose(f"light{number}", on, off, target, beside=ExtraPictures(others=beside)))
     return found
 
 

@@ -66,7 +66,7 @@ AS_BRIGHT = 0.25
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Beside:
+class ExtraPictures:
     """Further pictures and settings of a pose beside its pictures with the fan on and off.
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
@@ -82,7 +82,7 @@ class Beside:
     others: Mapping[str, tuple[Picture, Picture, Compression]] = field(default_factory=dict)
 
 
-NOTHING: Final = Beside()
+NOTHING: Final = ExtraPictures()
 
 
 def measure_plane_pose(
@@ -93,7 +93,7 @@ def measure_plane_pose(
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
     margin_mm: float | None = None,
-    beside: Beside = NOTHING,
+    beside: ExtraPictures = NOTHING,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -214,7 +214,7 @@ class _Light:
 
     @classmethod
     def of(
-        cls, on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], beside: Beside
+        cls, on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], beside: ExtraPictures
     ) -> _Light:
         """The difference of two pictures, or the only one."""
         alone = replace(beside, further=())
@@ -240,7 +240,7 @@ class _Light:
 
 
 def _stripes(
-    light: _Light, view: TargetView, settings: StripeSettings | None, beside: Beside
+    light: _Light, view: TargetView, settings: StripeSettings | None, beside: ExtraPictures
 ) -> tuple[Centreline, ...]:
     """Centrelines of the laser on the plate, of all exposures."""
     sites = beside.sites
@@ -268,7 +268,7 @@ class _Carried:
     camera: Camera | None
     paired: bool
 
-    def stripes(self, found: tuple[Centreline, ...], light: _Light, beside: Beside) -> tuple[Centreline, ...]:
+    def stripes(self, found: tuple[Centreline, ...], light: _Light, beside: ExtraPictures) -> tuple[Centreline, ...]:
         """Of what was `found` what lies on the even plate, up to its marks and between them, without clutter."""
         found = _on_even_plate(found, self.plate, self.level, self.carrier, laser_off=self.paired)
         found = without_clutter(found, self.camera)
@@ -285,14 +285,14 @@ def _in_others(
     carried: _Carried,
     outside: NDArray[np.bool_],
     settings: StripeSettings | None,
-    beside: Beside,
+    beside: ExtraPictures,
 ) -> Mapping[str, tuple[Centreline, ...]]:
     """The stripes in the other channels of a pair of colour pictures that show them not much fainter."""
     uv = np.vstack([line.uv for line in centrelines])
     height = float(np.median(np.concatenate([line.strength for line in centrelines])))
     found = {}
     for channel, (on, off, compression) in beside.others.items():
-        alone = Beside(compression=compression)
+        alone = ExtraPictures(compression=compression)
         light = _Light.of(on, off, carried.view, outside, alone)
         if float(np.median(_sample(light.picture, uv))) < AS_BRIGHT * height:
             continue

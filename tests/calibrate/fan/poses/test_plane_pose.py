@@ -10,7 +10,7 @@ from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses import plane_pose
 from core.calibrate.fan.poses.located_pose import shows_no_stripe
-from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import ExtraPictures, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.image.stripes.stripe import StripeSettings
@@ -133,7 +133,7 @@ def test_the_fan_is_seen_in_its_colour_and_the_target_in_grey(pair, with_off):
     on, off = in_colour(pair)
     grey = to_grey(on), to_grey(off) if with_off else None
     light = to_grey(on, "red-green"), to_grey(off, "red-green") if with_off else None
-    features = measure_plane_pose("p", *light, TARGET, CAMERA, beside=Beside(grey))
+    features = measure_plane_pose("p", *light, TARGET, CAMERA, beside=ExtraPictures(grey))
     assert features.reason is None
     misses = misses_px(features)
     assert len(misses) > 600
@@ -148,7 +148,7 @@ def test_stripes_are_found_in_other_channels_that_are_not_mere_crosstalk(pair, m
         light = cv2.warpAffine(light, np.array([[1, 0, 0], [0, 1, aside_px]], np.float32), light.shape[::-1])
         return np.clip(np.round(pair.off + light), 0, 255).astype(np.uint8), pair.off, UNCOMPRESSED
 
-    beside = Beside(others={"green": with_light(0.6, 0.5), "blue": with_light(0.1, 0.0)})
+    beside = ExtraPictures(others={"green": with_light(0.6, 0.5), "blue": with_light(0.1, 0.0)})
     features = measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA, beside=beside)
     assert np.array_equal(features.centrelines[0].uv, measured.centrelines[0].uv)
     assert features.others.keys() == {"green"}
@@ -269,7 +269,7 @@ def test_of_several_exposures_stripes_are_from_the_longest_that_is_not_saturated
     first, shorter = (render(POSE, seed=3, gain=3.0, exposure=exposure) for exposure in (1.0, 0.25))
     dark, longer = (render(POSE, seed=4, gain=0.25, exposure=exposure) for exposure in (0.4, 1.6))
     for one, other in ((first, shorter), (dark, longer)):
-        bracket = Beside(further=[(other.on, other.off)])
+        bracket = ExtraPictures(further=[(other.on, other.off)])
         both = measure_plane_pose("p", one.on, one.off, TARGET, CAMERA, beside=bracket)
         misses = misses_px(both)
         assert np.sqrt(np.mean(misses**2)) < 0.1
