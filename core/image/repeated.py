@@ -35,7 +35,7 @@ class Repeats:
     def __init__(self) -> None:
         self._seen: set[bytes] = set()
 
-    def again(self, *pixels: bytes) -> bool:
+    def is_repeat(self, *pixels: bytes) -> bool:
         """Whether one of the pictures of a view, pose or frame was given before; all are remembered."""
         known = {one for one in pixels if one}
         repeated = not self._seen.isdisjoint(known)

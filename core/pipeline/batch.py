@@ -42,7 +42,7 @@ Measure = Callable[..., SetResult]
 """Called as `measure_set`, and found by its name where the executor's workers are other processes."""
 
 
-def unwatched(told: SetUpdate) -> None:
+def ignore_update(told: SetUpdate) -> None:
     """Ignore an update: the default watcher."""
 
 
@@ -52,7 +52,7 @@ def run_batch(
     executor: Executor,
     options: Options | None = None,
     progress: Progress = silent,
-    watch: Watch = unwatched,
+    watch: Watch = ignore_update,
     measure: Measure | None = None,
 ) -> tuple[SetResult, ...]:
     """Measure recording sets side by side; one that cannot be measured does not keep the others from it.
@@ -108,7 +108,7 @@ def measure_sets(
     out: Path,
     options: Options | None = None,
     progress: Progress = silent,
-    watch: Watch = unwatched,
+    watch: Watch = ignore_update,
 ) -> tuple[SetResult, ...]:
     """Measure sets as `run_batch` does, in threads of this process: whatever ends it ends them, too."""
     with executor_of(THREADS) as threads:

@@ -33,11 +33,11 @@ def test_the_same_levels_of_another_size_or_depth_are_another_picture(picture):
 def test_pictures_without_any_noise_are_not_taken_for_one():
     black = np.zeros((48, 64), np.uint8)
     repeats = Repeats()
-    assert [repeats.again(pixels_of(black)) for _ in range(2)] == [False, False]
+    assert [repeats.is_repeat(pixels_of(black)) for _ in range(2)] == [False, False]
 
 
 def test_a_pose_is_there_again_if_one_of_its_two_pictures_is():
     repeats = Repeats()
-    assert not repeats.again(b"on", b"off")
-    assert not repeats.again(b"other on", b"other off")
-    assert repeats.again(b"third on", b"off")
+    assert not repeats.is_repeat(b"on", b"off")
+    assert not repeats.is_repeat(b"other on", b"other off")
+    assert repeats.is_repeat(b"third on", b"off")

@@ -50,8 +50,8 @@ def test_a_scan_at_rest_is_not_suspected(seed):
 def test_of_light_watched_in_five_frames_only_crossings_tell_and_that_is_told(method, moved):
     """Ten sweeps say by them whether anything moved, none whether the rig drifted."""
     features, rig = features_of(replace(BLOCK, moved_frame=0))
-    unwatched = tuple(replace(one, fan_shifts_px=np.zeros(0)) for one in features.frames[5:])
-    few = replace(features, frames=(*features.frames[:5], *unwatched))
+    ignore_update = tuple(replace(one, fan_shifts_px=np.zeros(0)) for one in features.frames[5:])
+    few = replace(features, frames=(*features.frames[:5], *ignore_update))
     result = reconstruct(few, rig.camera, rig.fan, ReconstructOptions(method, sigma_cut_mm=0.2))
     assert (result.moved, result.drifted) == (moved, None)
     (told,) = (note for note in result.notes if note.code == "scan.rest_not_judged")

@@ -181,7 +181,7 @@ class PictureReader:
             if not isinstance(result, Message):
                 first = first or (name, result)
                 _check_depth(path, result, *first)
-            yield name, Exclusion.REPEATED if repeats.again(pixels) else result
+            yield name, Exclusion.REPEATED if repeats.is_repeat(pixels) else result
 
 
 def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:

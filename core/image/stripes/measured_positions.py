@@ -40,7 +40,7 @@ _SAMPLE = 8  # points: every so many tell a median over sections
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Lit:
+class StripePicture:
     """Stripes of a picture before their refinement, and the scatter of its grey values."""
 
     picture: Picture
@@ -57,7 +57,7 @@ class Lit:
         ]
 
 
-def by_measured_section(lit: Lit, lines: list[Refined]) -> list[Refined] | None:
+def by_measured_section(lit: StripePicture, lines: list[Refined]) -> list[Refined] | None:
     """Locate stripes by their measured section; None where a Gaussian fits or no other section is known well.
 
     Parameters
@@ -95,7 +95,7 @@ def by_measured_section(lit: Lit, lines: list[Refined]) -> list[Refined] | None:
     return found
 
 
-def _surroundings(lit: Lit) -> Surroundings:
+def _surroundings(lit: StripePicture) -> Surroundings:
     background, width = (
         _median_of([figures[which] for figures in (stripe.sections for stripe in lit.stripes)]) for which in (2, 1)
     )
@@ -106,7 +106,7 @@ def _median_of(figures: list[Array]) -> float:
     return float(np.median(np.concatenate([one[::_SAMPLE] for one in figures])))
 
 
-def _departures(lit: Lit, curves: list[Array], every: int) -> Array:
+def _departures(lit: StripePicture, curves: list[Array], every: int) -> Array:
     """What stripes along these curves (N, 5) depart from a Gaussian, (GROUPS, 3, BINS), by every so many cuts."""
     sums, first, total = np.zeros((GROUPS, 3, BINS)), 0, sum(map(len, curves))
     scatter = (lit.noise.read_grey**2, lit.noise.grey_per_electron)

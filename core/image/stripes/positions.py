@@ -12,7 +12,7 @@ from scipy.special import chdtrc
 from core.compiled import compiled
 from core.image.stripes.curve import smooth_curve
 from core.image.stripes.likelihood.refinement import Refined, StripeModel, residuals
-from core.image.stripes.measured_positions import Lit, by_measured_section
+from core.image.stripes.measured_positions import StripePicture, by_measured_section
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.precision import FLOOR_PX, added_in_squares, noise_sigma, roughness, scatter
 from core.image.stripes.profile import Profiles, Sections, smooth_sections
@@ -96,7 +96,7 @@ def estimate_positions(
     lines = [_steger_line(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
     speckle = _speckle(picture, state, curves, sections, settings)
     stripes = [StripeModel(*four) for four in zip(curves, weights, clear, sections, strict=True)]
-    lit = Lit(picture, state, stripes, noise, speckle, g)
+    lit = StripePicture(picture, state, stripes, noise, speckle, g)
     refined = lit.refined(stripes)
     if _apart_px(pieces, lines, refined, g) > _LARGEST_DISAGREEMENT_PX:
         return lines

@@ -86,7 +86,7 @@ class LiveCamera:
             why = verdict.sentence if look.why_not is None else look.why_not
             self._context.notice(nothing_taken(why), refused=True)
         elif verdict.of_no_use:
-            self._context.dealt_with(look.frame)
+            self._context.release_scene(look.frame)
         elif verdict.take:
             self._sentence = Message("live.press_capture_view", "Press Take picture to take this view.")
         self._capture = False
@@ -137,7 +137,7 @@ class LiveCamera:
         judge.record_taken(named(view, name), frame.time_s)
         self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.next_outline()
         self._context.took(name, frame.picture)
-        self._context.dealt_with(frame)
+        self._context.release_scene(frame)
 
 
 def nothing_taken(why: Message) -> Message:

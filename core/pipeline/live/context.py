@@ -118,7 +118,7 @@ class LiveContext:
         self.lasers = lasers
         return self.source.lasers(lasers)
 
-    def dealt_with(self, frame: Frame) -> None:
+    def release_scene(self, frame: Frame) -> None:
         """Tell the source that a frame's content was taken, or is useless, so that it need not wait any more."""
         if isinstance(self.source, WaitingSource):
             self.source.go_on(frame)

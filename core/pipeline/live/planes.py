@@ -174,7 +174,7 @@ class LivePlanes:
         elif self._capture:
             self._context.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence), refused=True)
         elif doubt or verdict.of_no_use:
-            self._context.dealt_with(look.frame)
+            self._context.release_scene(look.frame)
         elif verdict.take:
             self._sentence = Message("live.press_capture_pose", "Press Take picture to take this pose.")
         self._capture = False
@@ -251,7 +251,7 @@ class LivePlanes:
             self._context.took(name, pending.on.picture)
             if self._checks and self._context.recorded >= CHECK_POSES:
                 raise Ended
-        self._context.dealt_with(pending.on)
+        self._context.release_scene(pending.on)
         self._pending, self._stage = None, "looking"
         if off is not None and not self._context.switch(_FAN_ON):
             self._context.notice(

@@ -132,7 +132,7 @@ def measure_poses(
         ratios += [] if ratio is None else [ratio]
         if len(ratios) == min(PAIRS_TRIED, pairs) > 1 and are_exchanged(ratios):
             raise InputError(EXCHANGED, where=recording_set.where(part), todo=_EXCHANGE)
-        features.append(PoseFeatures(pose.name, None, (), Exclusion.REPEATED) if repeats.again(*pixels) else pose)
+        features.append(PoseFeatures(pose.name, None, (), Exclusion.REPEATED) if repeats.is_repeat(*pixels) else pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *stated_width_notes(stripe, [usual_stripe(features)]))
     features[0] = replace(features[0], notes=(*of_all, *features[0].notes))

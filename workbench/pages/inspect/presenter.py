@@ -294,7 +294,7 @@ class InspectPresenter(StepPresenter):
             self.bench.notices.warning(tr("There are no points in that region."))
             return
         self.outlining = face
-        meant = face if face in FACES else self.feature.meant
+        meant = face if face in FACES else self.feature.selected_face
         feature = "" if face in FACES else self.features.chosen
         self.drawn.begin(feature, face, view.points[: len(chosen)][chosen])
 

@@ -118,7 +118,7 @@ class InspectFeatureEdit:
             self._put(spec, replace(spec, section=replace(spec.section, line_px=line)))
 
     @property
-    def meant(self) -> str:
+    def selected_face(self) -> str:
         """Meaning of points chosen in 3D: the plane face among them, or ("") all of them."""
         return "upper" if self.spec is not None and kind_of(self.spec).automatic == "numbered" else ""
 
