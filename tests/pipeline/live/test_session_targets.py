@@ -23,7 +23,7 @@ from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
 
 RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
-SCENARIO = Scenario(scale=0.25, camera_views=4, plane_poses=3)
+SCENARIO = Scenario(scale=0.2, camera_views=4, plane_poses=3)
 UNTIL_STOPPED = 2900
 """So many frames are more than a looker needs that gets little of a busy machine; a rule of the window stops before."""
 
