@@ -38,7 +38,7 @@ from core.translations import language
 from .inspection_samples import whole_content
 
 NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
-PICTURES = frozenset({"surface", "frame", "points", "maps", "deviation"})
+LEFT_OUT = frozenset(SECTIONS) - {"budget", "signatures"}
 
 
 def reader(data):
@@ -62,9 +62,8 @@ def data(content):
 
 @pytest.fixture(scope="module")
 def quick(content):
-    """The same with nothing to draw and a short list of inputs, each of whose cells is laid out."""
-    few = dict(list(content.hashes.items())[:4])
-    return replace(content, hidden=PICTURES, repeats=(), studies=(), hashes=few)
+    """The same with what cannot be left out, budgets and signatures: nothing is drawn, and few cells are laid out."""
+    return replace(content, hidden=LEFT_OUT, repeats=(), studies=())
 
 
 def test_every_characteristic_is_in_the_table_with_what_is_asked_U_k_and_its_decision(data):
