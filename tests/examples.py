@@ -9,13 +9,18 @@ import numpy as np
 import pytest
 
 import trisect
+from tests import conftest
+from tests.simulated import copy_of
+
+tiny_set, tiny_measured = conftest.tiny_set, conftest.tiny_measured
 
 
 @pytest.fixture(scope="session")
-def example_names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """A rendered set in a folder, and points of a plane and of a step."""
+def example_names(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """A folder with a rendered set and its results without a report, and points of a plane and of a step."""
     place = tmp_path_factory.mktemp("examples")
-    small = trisect.simulate(place / "set", scale=0.2, frames=8, camera_views=6, plane_poses=4, seed=3)
+    copy_of(request.getfixturevalue("tiny_measured"), place / "measured")
+    small = trisect.open_set(copy_of(request.getfixturevalue("tiny_set"), place / "set"))
     return {"place": place, "small": small, "flat": points_of(0.0), "step": points_of(30.0)}
 
 

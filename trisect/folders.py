@@ -191,8 +191,7 @@ def report(folder: str | Path, out: str | Path, *, progress: Progress = silent) 
 
     Examples
     --------
-    >>> result = run(place / "set", place / "reported", options=Options(sigma_cut_mm=0.3))
-    >>> report(place / "set", place / "reported").name
+    >>> report(place / "set", place / "measured").name
     'report.pdf'
     """
     return report_step(Workspace.open(open_set(folder), Path(out)), progress)

@@ -68,7 +68,7 @@ def stage():
 
 @pytest.fixture(autouse=True)
 def no_features(monkeypatch):
-    """No features are kept beside these recordings; that is tests/pipeline/live/test_recorded_features.py."""
+    """As if every recording were too short for its features to be kept: those are test_recorded_features.py's."""
     monkeypatch.setattr(recorded_features, "LOOK_AHEAD", 10**9)
 
 
