@@ -49,7 +49,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen beside below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
+.PHONY: demo app test rewritten offscreen beside below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -65,7 +65,12 @@ test: $(READY)            ## format, lint, types, rooms, examples, every test; w
 	$(if $(VIRTUAL_SCREEN),,echo "Xvfb is not installed: windows are tested without a screen only";) \
 	$(MAKE) --no-print-directory -j3 beside $(if $(VIRTUAL_SCREEN),on_screen) offscreen
 
-offscreen: compile
+# pytest compiles modules of tests itself: on a fresh checkout one process does, not each of those that run them. What
+# cannot be imported is told by these.
+rewritten: $(READY)
+	@find tests -name '*-pytest-*.pyc' -print -quit | grep -q . || QT_QPA_PLATFORM=offscreen $(BIN)/pytest -q -n 0 --collect-only > /dev/null || true
+
+offscreen: compile rewritten
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(if $(VIRTUAL_SCREEN),$(SCREEN_ONLY:%=--ignore=%))
 
 # What is checked without tests: each of it keeps one core busy, so it fills the time in which tests wait. They have to
@@ -85,7 +90,7 @@ touched_below_workbench: $(READY) ## those of them that rest on something that h
 imports: $(READY)         ## import every module of the program
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m tests.imports
 
-on_screen: compile
+on_screen: compile rewritten
 	@( set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY) ) $(IN_ONE_PIECE)
 
 examples: compile         ## those in the code's documentation and in the manual
