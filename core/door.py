@@ -75,6 +75,11 @@ def left_out() -> frozenset[str]:
     return frozenset(filter(None, map(str.strip, os.environ.get(WITHOUT, "").split(","))))
 
 
+def names_of_entry_points(group: str) -> frozenset[str]:
+    """The names that installed packages declare under a group of entry points; nothing is loaded."""
+    return frozenset(entry_points(group=group).names)
+
+
 def found_at(place: str) -> Any:
     """Import the module and return the object at "module:name"."""
     module, _, name = place.partition(":")

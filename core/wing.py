@@ -8,16 +8,18 @@ leaves wings out by their names.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
 from typing import Generic, Protocol, TypeVar
 
-from core.door import Brought, Origin, by_entry_points, by_folders, left_out
+from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, left_out, names_of_entry_points
 from core.messages import Message
 
-OURS, GROUP = "core.wings", "trisect.wings"
+OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
+OUR_COMMANDS: Mapping[str, str] = {"plan": "rig_planning", "study": "studies"}
+"""The commands of our own wings, and which wing each is of: known where the wing's folder is gone, too."""
 
 _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
@@ -53,12 +55,19 @@ class Wing:
         The command behind which they stand in `trisect --help`; "": at the end.
     sections
         What it adds to the report.
+    findings
+        "module:name" of the rows it adds to the table of findings, each a `core.findings.finding.Finding`; "": none.
+    reads_study
+        "module:name" of a function of the path of a study.json that gives the `core.report.content.ReportedStudy`, or
+        raises InputError; "": it reads none.
     """
 
     name: str
     commands: str = ""
     after: str = ""
     sections: tuple[ReportSection, ...] = ()
+    findings: str = ""
+    reads_study: str = ""
 
 
 class Named(Protocol):
@@ -77,11 +86,12 @@ AWing = TypeVar("AWing", bound=Named)
 class Found(Generic[AWing]):
     """Wings of one kind, ours first, each with the package it comes from, and what cannot be used.
 
-    The origin of one of ours is None.
+    The origin of one of ours is None. Of those left out only wings of other packages are among `away`.
     """
 
     wings: tuple[tuple[AWing, Origin | None], ...]
     unusable: tuple[Brought, ...]
+    away: tuple[AWing, ...] = ()
 
     def __iter__(self) -> Iterator[AWing]:
         return (wing for wing, _ in self.wings)
@@ -95,13 +105,36 @@ def wings() -> Found[Wing]:
 
 def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
     """Select the wings among loaded objects, without those left out; of one name the first counts."""
-    found, unusable = dict[str, tuple[AWing, Origin | None]](), list[Brought]()
+    found, unusable, away = dict[str, tuple[AWing, Origin | None]](), list[Brought](), list[AWing]()
     for one in brought:
         wing = one.what
         if one.name in left_out() or (isinstance(wing, kind) and wing.name in left_out()):
+            away += [wing] if isinstance(wing, kind) else []
             continue
         if isinstance(wing, kind) and wing.name not in found:
             found[wing.name] = wing, one.origin
         else:
             unusable.append(one if one.why else replace(one, why=_NO_WING))
-    return Found(tuple(found.values()), tuple(unusable))
+    return Found(tuple(found.values()), tuple(unusable), tuple(away))
+
+
+def how_to_get(name: str) -> Message:
+    """How a wing that is not there is had again, as the end of a sentence."""
+    if name in left_out() or any(wing.name == name for wing in wings().away):
+        return Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
+    return Message("advice.wing_missing", "install Trisect with all its folders")
+
+
+def note_on_no_wings() -> Message | None:
+    """The sentence that tells which names in WITHOUT are of no wing; None where each is of one."""
+    there, declared = wings(), names_of_entry_points(GROUP) | names_of_entry_points(WINDOW_GROUP)
+    known = {*OUR_COMMANDS.values(), *(wing.name for wing in (*there, *there.away))}
+    if not (unknown := sorted(left_out() - known - declared)):
+        return None
+    return Message(
+        "plugin.no_such_wing",
+        "{variable} names {unknown:and}, but the wings are {known:and}.",
+        variable=WITHOUT,
+        unknown=unknown,
+        known=sorted(known),
+    )

@@ -14,7 +14,7 @@ from functools import cache
 from itertools import groupby
 from string import Formatter
 
-from core.findings.table import FINDINGS
+from core.findings.table import all_findings
 from tests.code import ROOT, modules, nodes, syntax_tree
 from tests.translations import CODED, all_texts, called, literals
 
@@ -114,7 +114,7 @@ def page() -> str:
 
 def _weighed(code: str) -> str:
     """How grave a note is and what it does to what rests on the result, by the table of findings; '' of an error."""
-    row = FINDINGS.get(code)
+    row = all_findings().get(code)
     return "" if row is None else f"{row.weight.name.lower()}, {row.effect}"
 
 
@@ -150,7 +150,7 @@ def errors_of(of_module: Sequence[ast.AST], shared: Named | None = None) -> Iter
     `shared`: constants of all modules.
     """
     here = {one.asname or one.name for node in of_module if isinstance(node, ast.ImportFrom) for one in node.names}
-    named = {name: known for name, known in (shared or {}).items() if name in here}
+    named = {name: known for name, known in (shared or {}).items() if name.removesuffix("()") in here}
     for name, known in _named(of_module).items():
         named[name] = [*named.get(name, ()), *known]
     for node in of_module:
@@ -186,7 +186,7 @@ def _messages(node: ast.expr, named: Named) -> list[tuple[str, str]]:
         told = [str(one.value) for one in (code, text) if isinstance(one, ast.Constant)]
         return [(told[0], told[1])] if len(told) == 2 else []
     if isinstance(node, ast.Call) and called(node) == "note_of":
-        return [(code, FINDINGS[code].many or FINDINGS[code].text) for code in literals(node.args[0])]
+        return [(code, all_findings()[code].many or all_findings()[code].text) for code in literals(node.args[0])]
     if isinstance(node, ast.Call):
         return named.get(f"{called(node)}()", [])
     return named.get(ast.unparse(node), []) if named else []

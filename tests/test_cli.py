@@ -257,17 +257,6 @@ def test_simulate_takes_effects_of_real_rigs_from_a_file(tmp_path):
     )
 
 
-def test_the_reader_of_our_output_may_leave_early(tmp_path):
-    (tmp_path / "values.csv").write_text("value\n50.01\n50.02\n50.03\n")
-    command = [sys.executable, "-m", "core.cli", "study", "repeats", str(tmp_path / "values.csv"), "--json", "--quiet"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    process.stdout.close()
-    complaints = process.stderr.read()
-    process.stderr.close()
-    process.wait(timeout=120)
-    assert complaints == b""
-
-
 @pytest.mark.accuracy
 def test_width_and_contrast_of_the_stripes_can_be_given(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")

@@ -64,7 +64,7 @@ def nothing_begun(monkeypatch):
 
 
 def test_no_command_is_missing_here():
-    assert set(get_command(app).commands) - {"study", "sources"} == set(WITH_A_FOLDER)
+    assert set(get_command(app).commands) - {"sources"} == set(WITH_A_FOLDER)
 
 
 @pytest.mark.parametrize("command", WITH_A_FOLDER)

@@ -4,7 +4,6 @@ import json
 import re
 import shutil
 
-import numpy as np
 import pytest
 
 from core.cli import language
@@ -16,7 +15,6 @@ from core.files.project.folder import create_project
 from core.translations import PSEUDO
 from tests.report.test_report_pseudo import outside_brackets
 from tests.simulated import CUT, trisect
-from tests.study.grr_tables import AIAG
 
 SAME_EVERYWHERE = re.compile(
     r"(/[\w.\-/…]+)+|[\w.\-]+\.(png|json|toml|pdf|csv|ply|stl|trisectz)\b|[0-9a-f]{6,}|E_n|ndc|Cgk?|ANOVA|RMS|RMSE|trisect|"
@@ -60,13 +58,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
     out = shutil.copytree(measured, tmp_path / "out")
     project = tmp_path / "project"
     create_project(project, ProjectFile(new_project("2026")))
-    (tmp_path / "grr.csv").write_text(
-        "part;operator;value\n" + "".join(f"{p};{o};{AIAG[p, o, r]}\n" for p, o, r in cells(AIAG.shape))
-    )
-    (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n50.0;0.01\n")
-    values = 50 + 0.01 * np.random.default_rng(1).standard_normal(40) + 0.1 * (np.arange(40) > 35)
-    (tmp_path / "series.csv").write_text("value;u_mm\n" + "".join(f"{one};0.01\n" for one in values))
-    limits = ("--nominal", 50, "--tolerance", 0.2)
     commands = [
         ("mesh", out, "--format", "stl", "--fill-holes", 2, "--triangles", 900),
         ("export", out, "--format", "csv,json"),
@@ -78,11 +69,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         ("people", project),
         ("pack", project, "--out", tmp_path / "p.trisectz"),
         ("unpack", tmp_path / "p.trisectz", "--out", tmp_path / "again"),
-        ("study", "repeats", tmp_path / "repeats.csv", *limits),
-        ("study", "type1", tmp_path / "repeats.csv", *limits, "--resolution", 0.001),
-        ("study", "grr", tmp_path / "grr.csv", "--tolerance", 8),
-        ("study", "series", tmp_path / "series.csv", *limits),
-        ("study", "series", tmp_path / "repeats.csv", *limits),
     ]
     left = {
         " ".join(map(str, words[:2])): left_in_english(*words) - (FOLDERS if words[0] == "import" else set())
@@ -108,10 +94,6 @@ def test_the_audit_trail_has_no_untranslated_word_but_names_of_fields_and_what_p
 
 def words_of(*texts):
     return re.findall(r"[^\W\d_]{3,}", " ".join(texts))
-
-
-def cells(shape):
-    return [(p, o, r) for p in range(shape[0]) for o in range(shape[1]) for r in range(shape[2])]
 
 
 def test_all_help_is_in_the_catalogues():
@@ -157,7 +139,6 @@ def test_no_help_has_an_untranslated_word(monkeypatch, path, command):
     ("words", "sentence"),
     [
         (("scann",), 'there is no command "scann"; perhaps you mean scan.'),
-        (("study", "x"), 'there is no command "x"; see trisect study --help.'),
         (("--language", "en"), "a command is missing; see trisect --help."),
         (("scan",), "SET is missing; see trisect scan --help."),
         (("scan", "set"), "--out is missing; see trisect scan --help."),
@@ -233,11 +214,3 @@ def test_json_is_the_same_in_every_language(simulated, measured, tmp_path):
         trisect("gauge", tmp_path / "none", "--out", out, "--json", "--language", name).out for name in ("en", "de")
     ]
     assert refused[0] == refused[1]
-
-
-@pytest.mark.parametrize(("name", "shown"), [("thickness", "Dicke"), ("camera", "camera"), ("files", "files")])
-def test_a_name_of_ones_own_is_not_translated_though_the_catalogue_has_the_word(tmp_path, name, shown):
-    (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n")
-    said = trisect("study", "repeats", tmp_path / "repeats.csv", "--characteristic", name, "--language", "de")
-    assert said.out.splitlines()[0].split(": ")[1].strip() == shown, said.out
-    assert language.text_of("files") == "Dateien"

@@ -117,9 +117,8 @@ def completed(words):
 
 
 def test_a_shell_completes_commands_and_options_without_numba():
-    assert {"run", "batch", "study"} <= set(completed("trisect "))
+    assert {"run", "batch"} <= set(completed("trisect "))
     assert completed("trisect run --ex") == ["--exclude"]
-    assert {"repeats", "grr"} <= set(completed("trisect study "))
 
 
 def test_the_script_of_a_shell_is_shown(monkeypatch):

@@ -1,5 +1,6 @@
 """What is installed only by an extra: without it one sentence says what to install."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,8 @@ from core.pipeline.steps.export_kinds import WRITERS
 from workbench import __main__ as start
 
 
-def test_the_command_line_is_imported_without_any_extra():
+def extras_loaded_by(*modules):
+    """What of the extras is imported with these modules, in a process of their own."""
     of_extras = (
         "PySide6",
         "pyqtgraph",
@@ -28,12 +30,13 @@ def test_the_command_line_is_imported_without_any_extra():
         "qtconsole",
         "ipykernel",
     )
-    program = (
-        "import sys, core.cli.measuring, core.cli.preparing, core.cli.results, core.cli.studying, core.cli.importing; "
-        f"print([name for name in {of_extras} if name in sys.modules])"
-    )
+    program = f"import sys, {', '.join(modules)}; print([name for name in {of_extras} if name in sys.modules])"
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert said.stdout.strip() == "[]"
+    return ast.literal_eval(said.stdout)
+
+
+def test_the_command_line_is_imported_without_any_extra():
+    assert extras_loaded_by(*(f"core.cli.{name}" for name in ("measuring", "preparing", "results", "importing"))) == []
 
 
 def test_the_window_asks_for_its_extra(monkeypatch, capsys):

@@ -1,6 +1,5 @@
 """An error that is passed on is told in the reader's language, not in the English of the code that raised it."""
 
-import json
 import pickle
 from contextlib import contextmanager
 
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
+from core.checks.repeats import repeat_statistics
 from core.cli.preparing import target_of_words
 from core.errors import InputError, WrongValue
 from core.files.complaints import checked
@@ -16,16 +16,12 @@ from core.files.pictures import write_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_log import LOG
 from core.files.recording.recording_set import open_set
-from core.files.study.study_file import read_study, write_study
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.camera_step import see_views
 from core.pipeline.steps.planes_step import measure_poses
-from core.pipeline.steps.study_step import keep_study, keep_type1
-from core.study.repeats import repeat_statistics
 from core.translations import PSEUDO, language, strange
-from tests.files.study.test_study_file import STUDIES
 
 RIG = """
 [camera_target]
@@ -88,21 +84,6 @@ def test_a_damaged_log_of_a_recording(recorded):
     (note,) = open_set(recorded).log("scan").notes
     assert "line is damaged" in str(note)
     assert "ļííñéé ííš dáámááĝééd" in pseudo(note)
-
-
-def test_tables_and_repeats_of_which_no_study_can_be_made(tmp_path):
-    table = "part;operator;value\n" + "1;A;50\n1;A;50\n2;A;50\n2;A;50\n"
-    with refused("a gauge R&R study needs values that differ"):
-        keep_study(tmp_path, "grr", table, tmp_path, {})
-    with refused("a type-1 study needs two finite values or more"):
-        keep_type1(tmp_path, [("scan", 50.0, ())], 50.0, 1.0)
-
-
-def test_a_study_file_of_which_no_study_can_be_made(tmp_path):
-    path = write_study(tmp_path, STUDIES["repeats"])
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"scans": []}))
-    with refused("repeats need one finite thickness or more"):
-        read_study(path)
 
 
 def test_a_target_that_cannot_be():

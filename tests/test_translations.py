@@ -164,10 +164,9 @@ FOR_PROGRAMMERS = {
 }  # fmt: skip
 """Raised for wrong arguments: nobody who uses the program reads them; nor what is written to a `_log`."""
 READ_BY_PEOPLE = (
-    "core/model", "core/study/acceptance.py", "core/study/grr.py", "core/study/repeats.py", "core/study/series.py",
-    "core/study/type1.py",
+    "core/model", "core/checks", "core/wings/studies/kinds",
     "core/image/targets/kinds.py", "core/image/stripes/stripe.py", "core/calibrate/board_shape.py",
-    "core/acquire/drivers/pixel_formats.py", "core/files/stl.py", "core/pipeline/steps/acceptance_step.py",
+    "core/acquire/drivers/pixel_formats.py", "core/files/stl.py", "core/wings/studies/acceptance_step.py",
 )  # fmt: skip
 """Modules whose complaints about wrong values reach people: a `WrongValue` has a message, a `ValueError` none."""
 ALLOWED = {

@@ -19,11 +19,13 @@ WRITING = frozenset(
     {
         *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_PLANES, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
         *(jobs.CHECK_RIG, jobs.COMPARE_WITH_ARTEFACT, jobs.MEASURE_PROFILES, jobs.MEASURE_GAUGE),
-        *(jobs.MEASURE_FEATURES, jobs.MEASURE_ALL, jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY),
-        *(jobs.KEEP_TYPE1, jobs.ADD_RECORDING, jobs.SHOW_COMPARISON, jobs.FORGET_COMPARISON, jobs.KEEP_IMPORTED_CAMERA),
+        *(jobs.MEASURE_FEATURES, jobs.MEASURE_ALL, jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE),
+        *(jobs.ADD_RECORDING, jobs.SHOW_COMPARISON, jobs.FORGET_COMPARISON, jobs.KEEP_IMPORTED_CAMERA),
     }
 )
-"""Jobs that put something into the folder of the open project: none is done where another program has it open."""
+"""Jobs that put something into the folder of the open project: none is done where another program has it open.
+
+A wing says of its own with `writes` that they do."""
 
 COMPILES_S = 160.0
 """Processor seconds that the first start compiles where no code came with the program; told in whole minutes."""
@@ -62,6 +64,7 @@ class Bench:
         job: jobs.Job,
         *args: Any,
         on_failed: Callable[[Any], None] | None = None,
+        writes: bool = False,
         **more: Any,
     ) -> Task:
         def failed(problem: Any) -> None:
@@ -69,7 +72,7 @@ class Bench:
             if on_failed is not None:
                 on_failed(problem)
 
-        if job in WRITING and (refused := self.model.why_read_only()) is not None:
+        if (writes or job in WRITING) and (refused := self.model.why_read_only()) is not None:
             job, args, more["offers"] = jobs.REFUSE, (refused,), {}
         return lane.run(receiver, job, *args, on_failed=failed, **more)
 

@@ -6,20 +6,25 @@ its `WindowWing` under `trisect.window_wings` among its entry points. A wing has
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain
+from typing import Any, Protocol, TypeVar
 
+from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMainWindow
 
-from core.door import Brought, by_entry_points, by_folders, found_at
+from core.door import Brought, Origin, by_entry_points, by_folders, found_at
 from core.findings.brought import note_on_unusable
-from core.wing import Found, found_wings
+from core.report.facts.fact import Fact
+from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
 from workbench.language import text_of
 
-OURS, GROUP = "workbench.wings", "trisect.window_wings"
+Thing = TypeVar("Thing")
+
+OURS = "workbench.wings"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,31 +54,93 @@ class MenuEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class InspectTab:
+    """A tab of the page Inspect, behind those of the house.
+
+    Parameters
+    ----------
+    title, tip
+        English words that the window translates.
+    opens
+        "module:name" of a function of the page's presenter that returns the widget; its `refresh` is called when what
+        the page shows has changed.
+    """
+
+    title: str
+    tip: str
+    opens: str
+
+
+class RepeatsPart(Protocol):
+    """A widget below the statistics of the repeats."""
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+
+    def facts(self) -> Sequence[Fact]:
+        """What it tells, to be copied with the repeats."""
+
+
+@dataclass(frozen=True, slots=True)
 class WindowWing:
-    """Pages, menu entries and words that a wing adds to the window. What it names is imported when the window is
-    made.
+    """What a wing adds to the window. What it names is imported when the window is made.
+
+    Parameters
+    ----------
+    name
+        Of the wing.
+    entries
+        Of the menus.
+    tabs
+        Of the page Inspect.
+    below_repeats
+        "module:name" of a function of the presenter of the page Inspect that returns a `RepeatsPart`, a widget that
+        stands below the statistics of the repeats; "": nothing.
     """
 
     name: str
     entries: tuple[MenuEntry, ...] = ()
+    tabs: tuple[InspectTab, ...] = ()
+    below_repeats: str = ""
 
 
 @cache
 def window_wings() -> Found[WindowWing]:
-    """Load all wings of the window, once."""
-    return found_wings(WindowWing, chain(by_folders(OURS, "WINDOW_WING"), by_entry_points(GROUP)))
+    """All wings of the window, loaded once."""
+    return found_wings(WindowWing, chain(by_folders(OURS, "WINDOW_WING"), by_entry_points(WINDOW_GROUP)))
 
 
 def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, Callable[[], object]]:
-    """Return the action of each entry of the wings; a notice is shown for those that fail."""
-    made: dict[MenuEntry, Callable[[], object]] = {}
-    unusable = list(window_wings().unusable)
-    for wing, origin in window_wings().wings:
-        for entry in wing.entries:
-            try:
-                made[entry] = found_at(entry.opens)(bench, window)
-            except Exception as error:  # noqa: BLE001  (whatever a stranger's page raises: the window opens)
-                unusable.append(Brought(entry.name, None, f"{type(error).__name__}: {error}", origin))
-    for one in unusable:
+    """What each entry of the wings does; a notice tells of those that cannot be made."""
+    for one in window_wings().unusable:
         bench.notices.warning(text_of(note_on_unusable(one)))
-    return made
+    if note := note_on_no_wings():
+        bench.notices.warning(text_of(note))
+    entries = ((one, one.opens, one.name, origin) for wing, origin in window_wings().wings for one in wing.entries)
+    return dict(_made(bench, entries, bench, window))
+
+
+def inspect_tabs(bench: Bench, presenter: QObject) -> Sequence[tuple[InspectTab, Any]]:
+    """The tabs of the wings for the page Inspect, each with its widget; a notice tells of those that cannot be made."""
+    tabs = ((one, one.opens, one.title, origin) for wing, origin in window_wings().wings for one in wing.tabs)
+    return list(_made(bench, tabs, presenter))
+
+
+def repeats_parts(bench: Bench, presenter: QObject) -> Sequence[Any]:
+    """What the wings put below the statistics of the repeats; a notice tells of what cannot be made."""
+    parts = ((w, w.below_repeats, w.name, origin) for w, origin in window_wings().wings if w.below_repeats)
+    return [part for _, part in _made(bench, parts, presenter)]
+
+
+def _made(
+    bench: Bench, wanted: Iterable[tuple[Thing, str, str, Origin | None]], *given: object
+) -> Iterator[tuple[Thing, Any]]:
+    """Call the function at each place; each wanted thing has its place, the name it is told by, and its origin."""
+    for thing, place, name, origin in wanted:
+        try:
+            made = found_at(place)(*given)
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's page raises: the window opens)
+            unusable = Brought(name, None, f"{type(error).__name__}: {error}", origin)
+            bench.notices.warning(text_of(note_on_unusable(unusable)))
+            continue
+        yield thing, made

@@ -21,19 +21,18 @@ from core import __version__
 from core.cli import language, talk
 from core.cli.interrupts import Interrupts, interruptible
 from core.cli.measuring_commands import commands as measuring
-from core.cli.options import EPILOG, ExitCode, Panel
+from core.cli.options import EPILOG, ExitCode
 from core.cli.preparing_commands import commands as preparing
 from core.cli.project_commands import commands as projects
 from core.cli.result_commands import commands as results
 from core.cli.simulating import HELP_VALUES
 from core.cli.simulating import commands as simulating
-from core.cli.study_commands import studies
 from core.cli.usage import Commands, NoArgsIsHelpError, UsageError, usage_error
 from core.door import Brought, found_at
 from core.errors import Cancelled, InputError, NoThickness
 from core.messages import Message
 from core.messages import as_json as as_json_message
-from core.wing import Wing, wings
+from core.wing import Wing, note_on_no_wings, wings
 
 app = typer.Typer(
     name="trisect",
@@ -46,7 +45,6 @@ app = typer.Typer(
 )
 for commands in (measuring, results, preparing, projects, simulating):
     app.add_typer(commands)
-app.add_typer(studies, name="study", rich_help_panel=Panel.RESULTS)
 
 
 def _say_version(wanted: bool) -> None:
@@ -118,6 +116,8 @@ def _commands(_spoken: str) -> Any:
     """Every command in the language that is spoken: Typer reads all functions for it, which takes 0.1 s."""
     command, unusable = whole_command()
     _say_unusable(unusable)
+    if note := note_on_no_wings():
+        talk.print_line(language.text_of(note))
     return language.speak(command, HELP_VALUES)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from rich.table import Table
 
 from core.acquire.channel import Channel
+from core.checks.artefact_check import ArtefactCheck
 from core.cli import output, talk
 from core.cli.bar import lines_of, prints_lines
 from core.cli.language import current_language, speak_as, text_of, tr
@@ -56,7 +57,6 @@ from core.second_process import SecondProcess
 from core.settings.options import Options, StatedTilt
 from core.stage_times import StageTimes
 from core.states import SET_STATES
-from core.study.artefact_check import ArtefactCheck
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -16,6 +16,8 @@ from core.calibrate.results import (
     FanCalibration,
     ProposedReadjustment,
 )
+from core.checks.artefact_check import KINDS, ArtefactCheck
+from core.checks.control_chart import ControlChart
 from core.cli.language import current_language, text_of, tr
 from core.cli.talk import is_verbose
 from core.files.json_text import to_json
@@ -31,15 +33,13 @@ from core.messages import Message, as_json, plain, visible
 from core.report.facts.fact import Fact, Reader, for_reader, named
 from core.report.facts.of_checks import artefact_facts, check_facts, history_fact, history_table
 from core.report.facts.of_gauge import gauge_facts
-from core.report.facts.of_studies import verdict_fact
+from core.report.facts.of_verdict import verdict_fact
 from core.report.facts.pictures import Picture, left_out
 from core.report.facts.table import FactTable, tables_for_reader
 from core.report.wording import Words
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.states import VERDICT
-from core.study.artefact_check import KINDS, ArtefactCheck
-from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
 PIPE_WIDTH = 1000

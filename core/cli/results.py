@@ -30,10 +30,11 @@ from core.inspect.evaluate import Inspection
 from core.messages import Message, label, visible
 from core.pipeline.project.comparison import compare_project
 from core.pipeline.project.export import export_results, import_camera, with_template
+from core.pipeline.steps.brought_sections import with_studies
 from core.pipeline.steps.compare_step import compare_step
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
-from core.pipeline.steps.report_step import report_step, with_studies
+from core.pipeline.steps.report_step import report_step
 from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.facts.of_comparison import comparison_facts

@@ -5,13 +5,17 @@ from __future__ import annotations
 import difflib
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
+from typer.main import get_group
 
+from core.door import found_at
 from core.errors import Cancelled, InputError
 from core.messages import Message, plain
+from core.wing import OUR_COMMANDS, how_to_get, wings
 
 _ERRORS: Any = sys.modules[typer.BadParameter.__module__]
 """Typer carries click in a package of its own, which is called otherwise in other versions of it."""
@@ -34,9 +38,30 @@ class Commands(TyperGroup):
     def resolve_command(self, ctx: typer.Context, args: list[str]) -> Any:  # type: ignore[override]
         """Find the command that was typed (called by Typer); InputError if there is none of that name."""
         if args[0] not in self.commands:
+            if ctx.parent is None and (wing := missing_wing(args[0])):
+                raise InputError(
+                    Message(
+                        "cli.command_of_missing_wing",
+                        'the command "{command}" is of the wing {wing}, which is not there',
+                        command=args[0],
+                        wing=wing,
+                    ),
+                    todo=how_to_get(wing),
+                )
             what = Message("cli.no_such_command", 'there is no command "{command}"', command=args[0])
             raise InputError(what, todo=_see_help(ctx, difflib.get_close_matches(args[0], self.commands)))
         return super().resolve_command(ctx, args)
+
+
+def missing_wing(command: str) -> str:
+    """The wing that has this command and is not there; "" where none is known to have it."""
+    if command in OUR_COMMANDS:
+        return OUR_COMMANDS[command]
+    for wing in wings().away:
+        with suppress(Exception):  # whatever a stranger's module raises: then it has no command that could be told
+            if wing.commands and command in get_group(found_at(wing.commands)).commands:
+                return wing.name
+    return ""
 
 
 def usage_error(error: Any, words: Sequence[str]) -> InputError:

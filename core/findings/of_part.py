@@ -82,6 +82,8 @@ ROWS = (
             "Measured by the package {package} {version}, which is no part of Trisect."),
     Finding("plugin.unusable", Weight.CAUTION, Effect.NONE,
             "{name} of the package {package} {version} cannot be used: {why}."),
+    Finding("plugin.studies_not_printed", Weight.CAUTION, Effect.NONE,
+            "The project's studies are not printed, as no wing that reads them is there: {names:;}."),
     # Results and their uncertainty
     Finding("gauge.none_measured", Weight.GRAVE, Effect.NO_RESULT,
             "No thickness was measured: {reason}"),

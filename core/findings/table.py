@@ -8,16 +8,44 @@ rows; that nothing is proven comes from the facts (`core.findings.proof`), never
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from functools import cache
 from typing import Any
 
-from core.findings import of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan, of_studies
+from core.door import found_at
+from core.findings import of_artefacts, of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan
 from core.findings.finding import Finding, Weight
 from core.messages import Message
+from core.wing import wings
 
-_SUBJECTS = (of_camera, of_planes, of_rig, of_pictures, of_scan, of_part, of_studies, of_proof)
+_SUBJECTS = (of_camera, of_planes, of_rig, of_pictures, of_scan, of_part, of_artefacts, of_proof)
 FINDINGS: Mapping[str, Finding] = {row.code: row for subject in _SUBJECTS for row in subject.ROWS}
-"""By the code of the note."""
+"""By the code of the note; those of the wings are not among them: see `finding_of`."""
 assert len(FINDINGS) == sum(len(subject.ROWS) for subject in _SUBJECTS)
+
+
+@cache
+def _of_wings() -> Mapping[str, Finding]:
+    """The rows that wings add. One whose rows cannot be loaded adds none: its own calls of `note_of` then fail."""
+    found = dict[str, Finding]()
+    for wing in wings():
+        if wing.findings:
+            with suppress(Exception):  # whatever a stranger's module raises: the house tells its own findings
+                found |= {row.code: row for row in found_at(wing.findings)}
+    return found
+
+
+def finding_of(code: str) -> Finding | None:
+    """The row of the house, or of a wing, with this code; None where no row has it.
+
+    The wings are asked last: their modules may import those that tell findings of the house when they are imported.
+    """
+    return FINDINGS.get(code) or _of_wings().get(code)
+
+
+def all_findings() -> Mapping[str, Finding]:
+    """Every row, of the house and of the wings, by its code."""
+    return {**FINDINGS, **_of_wings()}
 
 
 def note_of(code: str, /, **values: Any) -> Message:
@@ -35,12 +63,15 @@ def note_of(code: str, /, **values: Any) -> Message:
     >>> str(note_of("camera.few_views", n=4, least=6))
     'Only 4 views are used: take at least 6, better 10 to 15.'
     """
-    return FINDINGS[code].note(**values)
+    row = finding_of(code)
+    if row is None:
+        raise KeyError(code)
+    return row.note(**values)
 
 
 def weight_of(note: Message) -> Weight:
     """Return the weight of a note, or of the gravest one inside it; one of another package is a caution."""
-    row = FINDINGS.get(note.code)
+    row = finding_of(note.code)
     told = [weight_of(one) for one in note.values.values() if isinstance(one, Message) and row is None]
     return max(told) if told else Weight.CAUTION if row is None else row.weight
 
@@ -52,13 +83,13 @@ def is_grave(note: Message) -> bool:
 
 def fact_of(note: Message) -> str:
     """Return the fact by which nothing is proven that a note tells; "" for none."""
-    row = FINDINGS.get(note.code)
+    row = finding_of(note.code)
     return "" if row is None else row.fact
 
 
 def without_notes_on(field: str, notes: Iterable[Message]) -> tuple[Message, ...]:
     """Remove the notes on this field of the record they are in."""
-    return tuple(note for note in notes if note.code not in FINDINGS or FINDINGS[note.code].told_of != field)
+    return tuple(note for note in notes if (row := finding_of(note.code)) is None or row.told_of != field)
 
 
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta
 from itertools import chain
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.checks.artefact_check import ArtefactCheck
+from core.checks.repeats import RepeatStatistics, repeat_statistics
 from core.door import Origin
 from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
@@ -30,15 +32,12 @@ from core.report.facts.of_checks import Check, artefact_facts, check_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_planes import planes_facts
 from core.report.facts.of_scan import scan_facts, sigma_of
-from core.report.facts.of_studies import study_facts, study_tables
+from core.report.facts.table import FactTable
 from core.report.template import SECTIONS, Paper, ReportTemplate
-from core.report.wording import result_name
+from core.report.wording import ENGLISH, Words, result_name
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
-from core.study.artefact_check import ArtefactCheck
-from core.study.repeats import RepeatStatistics, repeat_statistics
-from core.study.study import Study
 
 MOST_CALLOUTS = 10
 """On the picture of the surface; the table of results has all."""
@@ -187,6 +186,36 @@ class BroughtSection:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class ReportedStudy:
+    """A study as the report prints it: a wing reads it from its file.
+
+    Parameters
+    ----------
+    kind
+        What its kind is called, in English.
+    name
+        Of what it measured: fixed words (`label`), or a name as the user gave it; "": it has none.
+    facts, tables, notes
+        What it tells.
+    figure
+        Draws its chart, given a `core.report.layout.style.ReportLook` and the width in mm; None: it has none. It goes
+        to another process, and so is a function of a module, or a `partial` of one.
+    """
+
+    kind: str
+    name: str
+    facts: tuple[Fact, ...]
+    tables: tuple[FactTable, ...] = ()
+    notes: tuple[Message, ...] = ()
+    figure: Callable[[Any, float], Any] | None = None
+
+    def title(self, words: Words = ENGLISH) -> str:
+        """What it is called: 'Gauge R&R', 'Series: thickness'."""
+        kind = words(self.kind)
+        return words("{name}: {value}", name=kind, value=self.name) if self.name else kind
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class ReportContent:
     """Content of a report: everything that is printed. The same content gives the same bytes.
 
@@ -300,7 +329,7 @@ class ReportContent:
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
     compared: tuple[Fact, ...] = ()
-    studies: tuple[Study, ...] = ()
+    studies: tuple[ReportedStudy, ...] = ()
     check: Check | None = None
     artefacts: tuple[ArtefactCheck, ...] = ()
     brought: tuple[BroughtSection, ...] = ()
@@ -408,7 +437,7 @@ class ReportContent:
         choices |= {
             "language": "" if self.language == "en" else self.language,
             "template": self.template.words,
-            "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
+            "studies": [(one.facts, one.tables, one.notes) for one in self.studies],
             "artefacts": self.artefacts,
             "compared": self.compared,
             "brought": self.brought,

@@ -21,10 +21,7 @@ from core.report.plots import figures
 from core.report.plots.charts import deviation_figure, points_figure
 from core.report.plots.overlay_plot import overlay_figure
 from core.report.plots.profile_plot import profiles_figure, section_figure
-from core.report.plots.run_chart import control_charts_figure, repeats_figure, run_chart_figure
-from core.report.sections.studies import control_charts, run_lines
-from core.study.repeats import RepeatStudy
-from core.study.study import InOrder
+from core.report.plots.run_chart import repeats_figure
 
 (
     SURFACE_MM,
@@ -36,7 +33,6 @@ from core.study.study import InOrder
     CHART_MM,
     DEVIATION_MM,
     PROFILES_MM,
-    CONTROL_MM,
     SECTION_MM,
 ) = (
     104.0,
@@ -48,7 +44,6 @@ from core.study.study import InOrder
     42.0,
     80.0,
     62.0,
-    76.0,
     50.0,
 )
 """Heights of the pictures at scale 1."""
@@ -94,9 +89,9 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
         if len(one.deviation)
     }
     drawings |= {
-        f"study-{number}": partial(_study_figure, look, study, width)
+        f"study-{number}": partial(study.figure, look, width)
         for number, study in enumerate(content.studies)
-        if isinstance(study, InOrder) and len(study.values) > 1
+        if study.figure is not None
     }
     section_of = {"study": "studies", "section": "sections"}
     hidden = content.hidden
@@ -105,13 +100,6 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
         for name, draw in drawings.items()
         if section_of.get(name.partition("-")[0], name.partition("-")[0]) not in hidden
     }
-
-
-def _study_figure(look: ReportLook, study: InOrder, width: float) -> Figure:
-    if charts := control_charts(study):
-        return control_charts_figure(look, charts, study.unit, width, CONTROL_MM)
-    U = study.U.tolist() if isinstance(study, RepeatStudy) else ()
-    return run_chart_figure(look, study.values.tolist(), U, run_lines(study), study.unit, width, CHART_MM)
 
 
 def image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:

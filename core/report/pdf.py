@@ -17,7 +17,6 @@ from core.messages import capital
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
-from core.report.facts.of_studies import study_tables, study_title
 from core.report.layout.blocks import LEAST_SCALE, Limits
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
@@ -152,8 +151,8 @@ def _names(content: ReportContent) -> Iterator[str]:
     for brought in content.brought:
         yield from (brought.title, *(str(text) for one in brought.facts for text in (one.label, one.value)))
     for study in content.studies:
-        cells = (str(cell) for table in study_tables(study) for row in table.rows for cell in row)
-        yield from (study_title(study), *map(str, study.notes), *cells)
+        cells = (str(cell) for table in study.tables for row in table.rows for cell in row)
+        yield from (study.title(), *map(str, study.notes), *cells)
 
 
 def _most_pages(content: ReportContent) -> int:

@@ -16,7 +16,6 @@ from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import NO_BREAK_SPACE, Language, Message, capital, decimals_of, label, plain, plural_message
 from core.states import DECISIONS
-from core.study.repeats import THICKNESS
 from core.translations import language
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -171,14 +170,6 @@ def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
 def verdict_title(verdict: str, words: Words = ENGLISH) -> str:
     """Write a verdict as a title: "Not conforming"."""
     return capital(words(DECISIONS[verdict]))
-
-
-def study_name(name: str, words: Words = ENGLISH) -> str:
-    """Return the name of what a study measured.
-
-    The thickness in the reader's language, any other as the user gave it.
-    """
-    return words(name) if name == THICKNESS else name
 
 
 def shown_unit(one: Characteristic) -> tuple[str, float]:

@@ -91,7 +91,7 @@ def test_no_finding_by_which_nothing_is_proven_stands_beside_conforming(code, ma
 
 def test_a_note_that_takes_away_no_proof_makes_no_doubt():
     with pytest.raises(ValueError, match="takes away no proof"):
-        Doubt.of(note_of("study.no_spread"))
+        Doubt.of(note_of("profile.stood_still"))
     with pytest.raises(ValueError, match="takes away no proof"):
         Doubt.of(plain("It was too warm."))
 
@@ -108,7 +108,7 @@ def test_a_verdict_is_made_by_one_function_alone():
 
 
 def test_every_fact_that_takes_away_a_proof_is_told_in_few_words():
-    assert {row.fact for row in FINDINGS.values() if row.effect == Effect.NO_PROOF} | {UNNAMED, DAY} == set(REASONS)
+    assert {row.fact for row in FINDINGS.values() if row.effect == Effect.NO_PROOF} | {UNNAMED, DAY} <= set(REASONS)
     assert [str(one.note) for one in doubts_named(["moved", "melted"], complete=False)] == [
         "something moved during the scan", "melted",
     ]  # fmt: skip

@@ -1,6 +1,7 @@
 """The table of findings holds every note, and no other; each call that makes a note gives what its text tells."""
 
 import ast
+import re
 from dataclasses import fields
 
 import pytest
@@ -9,24 +10,24 @@ from core.findings import of_proof
 from core.findings.finding import Effect, Finding, Weight
 from core.findings.of_proof import DAY
 from core.findings.proof import ScanFacts
-from core.findings.table import FINDINGS, note_of
+from core.findings.table import FINDINGS, all_findings, note_of
 from core.messages import plural_message
 from tests.code import ROOT, modules, nodes
 from tests.translations import all_texts, called, literals, texts
 
 pytestmark = pytest.mark.usefixtures("syntax_trees")
 
-ROOMS = ("core/calibrate/", "core/image/", "core/scan/", "core/inspect/", "core/study/", "core/pipeline/steps/")
+ROOMS = (
+    *("core/calibrate/", "core/image/", "core/scan/", "core/inspect/", "core/checks/", "core/pipeline/steps/"),
+    "core/wings/studies/kinds/",
+)
 """Rooms whose sentences are notes of results."""
 LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", "core/scan/preview/")
 """What these say is of the moment: of one picture, one crossing, the next sweep."""
 ANSWERS = {"readjust.undone"}
 """What a command answers."""
-OF_ONE_RESULT = {
-    "artefact_without_u", "faces_not_spanned", "light_skewed", "master_doubted", "results_doubted",
-    "scatter_alone", "several_faces", "u_incomplete",
-}  # fmt: skip
-"""Facts that take away the proof of one result, or of a study."""
+OF_ONE_RESULT = {"faces_not_spanned", "light_skewed", "master_doubted", "several_faces", "u_incomplete"}
+"""Facts that take away the proof of one result."""
 OF_THE_DAY = {
     "calibration_lapsed", "calibration_undated", "check_failed", "check_lapsed", "history_unreadable", "never_checked",
 }  # fmt: skip
@@ -42,10 +43,10 @@ def wrong_calls(of_module):
             given = {keyword.arg for keyword in node.keywords}
             codes = literals(node.args[0]) or [""]
             for code in codes:
-                if code not in FINDINGS:
+                if code not in all_findings():
                     yield node.lineno, code, "has no row"
-                elif given != FINDINGS[code].places:
-                    yield node.lineno, code, f"tells {sorted(FINDINGS[code].places)}"
+                elif given != all_findings()[code].places:
+                    yield node.lineno, code, f"tells {sorted(all_findings()[code].places)}"
 
 
 def test_when_a_finding_holds_is_written_once():
@@ -58,7 +59,7 @@ def test_when_a_finding_holds_is_written_once():
         if isinstance(node, ast.Call) and called(node) == "note_of"
         for code in literals(node.args[0])
     ]
-    assert sorted(told) == sorted(FINDINGS.keys() - by_fact), "each once, and none of a fact of a scan"
+    assert sorted(told) == sorted(all_findings().keys() - by_fact), "each once, and none of a fact of a scan"
 
 
 def test_every_note_that_is_made_has_a_row_and_gets_what_its_text_tells():
@@ -79,9 +80,9 @@ def test_every_note_that_is_made_has_a_row_and_gets_what_its_text_tells():
         ('table.note_of("camera.few_views", n=1, least=2, more=3)', "tells ['least', 'n']"),
         ('note_of("camera.few_views", **values)', "tells ['least', 'n']"),
         ('note_of("camera.misfound_corners", view=name)', "tells ['n', 'view']"),
-        ('note_of("study.no_spread" if x else "camera.few_views")', "tells ['least', 'n']"),
+        ('note_of("profile.stood_still" if x else "camera.few_views")', "tells ['least', 'n']"),
         ('note_of("camera.few_views", n=1, least=2)', None),
-        ('note_of("study.no_spread" if x else "study.not_steady")', None),
+        ('note_of("profile.stood_still" if x else "profile.one_line_on_part")', None),
     ],
 )
 def test_a_call_that_would_fail_is_seen(call, why):
@@ -105,8 +106,9 @@ def test_a_note_that_counts_has_a_text_for_one_and_one_for_more():
 
 
 def test_no_other_call_tells_a_text_of_the_table():
-    elsewhere = {text.code for text in all_texts() if not text.path.startswith("core/findings/of_")}
-    assert elsewhere & set(FINDINGS) == set()
+    rows = re.compile(r"core/(findings/of_\w+|wings/\w+/findings)\.py")
+    elsewhere = {text.code for text in all_texts() if not rows.fullmatch(text.path)}
+    assert elsewhere & set(all_findings()) == set()
 
 
 def test_what_takes_away_a_proof_is_grave_and_nothing_else_names_a_fact():

@@ -22,7 +22,7 @@ import numpy as np
 
 from core.errors import LONGEST, InputError
 from tests.hostile.mutations import mutated
-from tests.hostile.readers import READERS
+from tests.hostile.readers import all_readers
 
 MEMORY_BYTES = 2 << 30
 CASE_S = 10
@@ -59,12 +59,12 @@ def main() -> None:
 
 def case_name(number: int) -> str:
     """The reader that a case is of."""
-    return sorted(READERS)[number % len(READERS)]
+    return sorted(all_readers())[number % len(all_readers())]
 
 
 def _case(good: Path, work: Path, seed: int, number: int) -> str:
     """What went wrong; "" if nothing did."""
-    reader = READERS[case_name(number)]
+    reader = all_readers()[case_name(number)]
     path = work / reader.file
     data = (good / reader.file).read_bytes()
     try:

@@ -9,6 +9,8 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -52,16 +54,13 @@ from core.files.results.rig_history import DATA, read_history
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
 from core.files.results.shown_file import read_shown, write_shown
-from core.files.study.input import read_crossed, read_readings, read_repeats
-from core.files.study.study_file import read_study, write_study
-from core.files.study.table import read_table
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.inspect.shown.view_frame import CAMERA_FRAME
 from core.messages import Message
 from core.simulate.scenario import Scenario
 from core.simulate.truth import load_truth, truth_folder
+from tests.code import ROOT
 from tests.files.plan.test_plan_file import EVERYTHING
-from tests.files.study.test_study_file import STUDIES
 from tests.report.report_samples import camera_calibration
 
 
@@ -149,17 +148,25 @@ READERS = {
     "mesh": Reader("mesh.ply", read_mesh),
     "nominal": Reader("part.stl", lambda path: read_nominal(path, 0.1)),
     "log": Reader("log/recording.csv", lambda path: read_log(path.parent)),
-    "table": Reader("table.csv", read_table),
-    "repeats": Reader("repeats.csv", lambda path: read_repeats([path])),
-    "crossed": Reader("crossed.csv", read_crossed),
-    "readings": Reader("readings.csv", read_readings),
     "opencv yaml": Reader("opencv.yml", read_opencv),
     "opencv json": Reader("opencv.json", read_opencv),
     "opencv xml": Reader("opencv.xml", read_opencv),
     "ros": Reader("ros.yaml", read_camera_info),
     **{f"picture {end}": Reader(f"picture.{end}", _picture) for end in ("png", "jpg", "tif", "bmp", "pgm")},
-    **{f"study {name}": Reader(f"study-{place}.json", read_study) for place, name in enumerate(STUDIES)},
 }
+
+
+@cache
+def of_wings() -> tuple[Any, ...]:
+    """The modules `readers` among the tests of the wings: each has READERS, and `good_files` of a folder."""
+    places = sorted((ROOT / "tests" / "wings").glob("*/readers.py"))
+    return tuple(import_module(f"tests.wings.{path.parent.name}.readers") for path in places)
+
+
+@cache
+def all_readers() -> dict[str, Reader]:
+    """Those of the house, and those of the wings."""
+    return READERS | {name: reader for wing in of_wings() for name, reader in wing.READERS.items()}
 
 
 def _cloud(path: Path) -> Any:
@@ -231,8 +238,8 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     shutil.copytree(results, folder)
     shutil.copy(recording / "rig.toml", folder)
     write_plan(folder / "plan.toml", EVERYTHING)
-    for place, study in enumerate(STUDIES.values()):
-        shutil.move(write_study(folder / "study", study), folder / f"study-{place}.json")
+    for wing in of_wings():
+        wing.good_files(folder)
     template = (
         'name = "A"\naddress = ["B", "C"]\nlogo = "logo.png"\naccent = "#14586E"\ntext = "D"\nwithout = ["frame"]'
     )
@@ -296,13 +303,6 @@ def _tables(folder: Path) -> None:
     (folder / "log").mkdir()
     rows = "".join(f"frame{i}.png,{i},{i / 30:.6f},0\n" for i in range(9))
     (folder / "log" / "recording.csv").write_text(f"name,index,time_s,dropped\n{rows}")
-    (folder / "table.csv").write_text("a;b;c\n1,5;2;x\n3;4;y\n")
-    (folder / "repeats.csv").write_text("value\n" + "".join(f"50.{i}\n" for i in range(9)))
-    rows = "".join(f"p{p},o{o},{p + o / 10 + r / 100}\n" for p in range(3) for o in range(2) for r in range(2))
-    (folder / "crossed.csv").write_text(f"part,operator,value\n{rows}")
-    (folder / "readings.csv").write_text(
-        "quantity,position,measured_mm,calibrated_mm\nsize,left,30.01,30.0\nform,left,0.02,\n"
-    )
 
 
 def _cameras(folder: Path) -> None:

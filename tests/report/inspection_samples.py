@@ -7,20 +7,19 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from PIL import Image
 
+from core.checks.repeats import repeat_statistics
 from core.inspect.causes import cause_named
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.gauge import RULE
 from core.inspect.results import Contribution
-from core.messages import Message
-from core.report.content import CalibrationMark, Deviations
+from core.messages import Message, label, plain
+from core.report.content import CalibrationMark, Deviations, ReportedStudy
+from core.report.facts.of_repeats import repeat_facts
+from core.report.facts.of_verdict import verdict_fact
+from core.report.facts.table import Column, FactTable, Uncertain
+from core.report.plots.run_chart import run_chart_figure
 from core.report.template import ReportTemplate
-from core.study.acceptance import Reading, acceptance_check
-from core.study.budget import from_stated
-from core.study.grr import grr_study
-from core.study.repeats import Requirement, repeat_study
-from core.study.series import StatedUncertainty, series_study
-from core.study.type1 import type1_study
 
 from .report_samples import block_content, repeats
 
@@ -32,6 +31,7 @@ STATED = Message(
 )
 
 INF = math.inf
+VALUES = [50.004, 50.011, 50.008, 50.015, 50.012]
 MEASURED = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
 
 
@@ -58,24 +58,26 @@ def characteristics():
     return tuple(rows)
 
 
+def chart(look, width):
+    """The run chart of the second study."""
+    return run_chart_figure(look, VALUES, (), {label("mean"): 50.01}, "mm", width, 42.0)
+
+
 def studies():
-    """One of each kind."""
-    rng = np.random.default_rng(4)
-    values = 50.0 + rng.normal(0.002, 0.004, 25)
-    parts = 49.9 + 0.05 * rng.standard_normal((5, 1, 1)) + 0.002 * rng.standard_normal((5, 3, 2))
-    repeated = (50.004 + 0.006 * rng.standard_normal(12)).tolist()
-    budget = from_stated(repeated, [0.01] * 12)
-    known = {"complete": True, "U": [0.02] * 12, "asked": Requirement(50.0, (-0.1, 0.1))}
-    series = (50.0 + 0.01 * rng.standard_normal(40)).tolist()
-    series[25] += 0.06
-    readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place, u=0.001) for place in range(10)]
-    readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
+    """Two, as a wing might read them from its files."""
+    known = repeat_facts(repeat_statistics(VALUES, 50.0), nominal=50.0)
+    columns = (
+        Column(label("quantity")),
+        Column(label("largest error"), "mm", signed=True),
+        Column(label("limit"), "mm"),
+    )
+    rows = tuple((plain(f"p{n}"), Uncertain(0.01 + n / 1000, 0.002 + n / 9000), 0.05 + n / 100) for n in range(12))
+    note = Message("report.note_of_result", "{name}: {note}", name="p1", note=STATED)
     return (
-        type1_study(values, 50.0, 0.4),
-        grr_study(parts, tolerance=0.4),
-        series_study(series, (49.9, 50.1), stated=StatedUncertainty(0.003, 0.006), name="width"),
-        repeat_study(repeated, budget, **known),
-        acceptance_check(readings, {"form": 0.05, "size": 0.012}),
+        ReportedStudy(
+            label("Gauge R&R"), "", (verdict_fact("acceptable"), *known), (FactTable(columns, rows),), (note,)
+        ),
+        ReportedStudy(label("Series"), label("thickness"), (verdict_fact("not proven"), *known), (), (), chart),
     )
 
 

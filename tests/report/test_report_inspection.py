@@ -19,10 +19,10 @@ from core.inspect.conformity import Limits, Verdict
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution
-from core.messages import plain
+from core.messages import label, plain
 from core.progress import silent
 from core.report import pdf
-from core.report.content import MOST_CALLOUTS
+from core.report.content import MOST_CALLOUTS, ReportedStudy
 from core.report.drawings import drawings
 from core.report.facts.of_comparison import comparison_facts
 from core.report.layout.style import BOLD, SANS, ReportLook, words_width
@@ -31,7 +31,7 @@ from core.report.plots.charts import callouts, surface_figure
 from core.report.plots.run_chart import run_chart_figure
 from core.report.sections.result import DECIDED, WIDTHS
 from core.report.template import SECTIONS, ReportTemplate
-from core.report.wording import SIGNS, Words, study_name, verdict_title
+from core.report.wording import SIGNS, Words, verdict_title
 from core.scan.surface.fused_surface import Mesh
 from core.translations import language
 
@@ -175,21 +175,18 @@ def test_names_of_ones_own_stay_as_they_are_though_the_catalogue_has_the_words(c
     drawn = [drawings(look, one, silent)["points"]() for one in known]
     legends = [text.get_text().split("\n")[0] for one in drawn for text in one.axes[0].get_legend().get_texts()]
     assert sorted(legends) == sorted(2 * ["Obere Fläche", "Untere Fläche", "files"])
-    assert [study_name(name, look.words) for name in ("thickness", "files")] == ["Dicke", "files"]
+    studies = [ReportedStudy(label("Series"), name, ()) for name in (label("thickness"), "files")]
+    assert [study.title(look.words) for study in studies] == ["Serie: Dicke", "Serie: files"]
 
 
-def test_studies_are_printed_with_figures_and_notes(data):
+def test_what_a_wing_tells_of_studies_is_printed_with_figures_tables_and_notes(content, data):
     text = words(data)
-    assert "Type-1 study Verdict Cg (95 %) Cgk Bias (95 %) s (n − 1) Repeats" in text
-    assert "source of variation σ, mm share of σ², % of the total, % of T, %" in text
-    assert "Gauge R&R Verdict %GRR of T (95 %) %GRR of the total (95 %) Categories (ndc)" in text
-    assert "is pooled with the error" in text
-    assert "Repeats: thickness Verdict Repeats Mean s (n − 1) Nominal Bias conforming 12 50.00" in text
-    assert "contribution to U of the mean u, mm share of u², %" in text
-    assert "quantity positions largest error, mm at limit, mm verdict" in text
-    assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text
-    assert "probing error, size 4 +0.0100 p0 0.012 conforming" in text
-    assert "4 of the 10 positions the guideline asks for" in text
+    assert "Gauge R&R Verdict Repeats Mean s (n − 1) Nominal Bias acceptable 5 50.0100 mm 0.0042 mm" in text
+    assert "Series: thickness Verdict Repeats" in text
+    assert "quantity largest error, mm limit, mm p0 +0.0100 0.05" in text
+    assert "p1: Stated at 20 °C: −0.75 µm for a part at 21.3 °C." in text
+    drawn = drawings(ReportLook(Words(), content.template.accent), content, silent)
+    assert [name for name in drawn if name.startswith("study-")] == ["study-1"]
 
 
 @pytest.mark.parametrize(("fits_at", "pages"), [(0.9, 4), (0.6, 5)])

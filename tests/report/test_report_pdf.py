@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pypdf import PdfReader
 
+from core.checks.artefact_check import Artefact, ArtefactCheck
 from core.errors import Cancelled
 from core.inspect.causes import Cause
 from core.inspect.characteristic import thickness_characteristic
@@ -20,7 +21,6 @@ from core.report.pdf import build_report
 from core.report.template import SECTIONS
 from core.scan.results import FrameRecord
 from core.scan.surface.fused_surface import Mesh
-from core.study.artefact_check import Artefact, ArtefactCheck
 
 from .report_samples import block_content, gauge
 

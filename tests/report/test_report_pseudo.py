@@ -7,8 +7,6 @@ import pytest
 from pypdf import PdfReader
 
 from core.report.pdf import build_report
-from core.study.repeats import RepeatStudy
-from core.study.series import SeriesStudy
 from core.translations import PSEUDO
 
 from .inspection_samples import whole_content
@@ -57,7 +55,7 @@ def spoken(content):
     texts += [str(row.source) for one in content.inspected for row in one.budget] + [
         one.name for one in content.deviations
     ]
-    texts += [one.name for one in content.studies if isinstance(one, RepeatStudy | SeriesStudy)]
+    texts += [one.name for one in content.studies]
     return {word.casefold() for text in texts for word in re.findall(r"[^\W\d_]+", text)}
 
 

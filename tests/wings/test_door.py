@@ -3,7 +3,7 @@
 import pytest
 
 from core.door import WITHOUT, by_folders
-from core.wing import wings
+from core.wing import OUR_COMMANDS, wings
 from tests.simulated import trisect
 from tests.wings.strangers import install, look_again
 from workbench.wing import window_wings
@@ -80,11 +80,28 @@ def test_a_wing_that_cannot_be_used_is_told_and_every_command_stays(install, nam
 
 def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
     installed(install, "WING")
-    monkeypatch.setenv(WITHOUT, "another, greeting")
+    monkeypatch.setenv(WITHOUT, "plan, greeting")
     look_again()
-    said = trisect("greet")
-    assert said.code == 2 and 'there is no command "greet"' in said.err
-    assert "cannot be used" not in trisect("--help").err
+    said, what = trisect("greet"), 'the command "greet" is of the wing greeting, which is not there'
+    assert said.code == 2 and f"{what}; take it out of TRISECT_WITHOUT_WINGS." in said.err
+    assert "cannot be used" not in said.err
+    assert "TRISECT_WITHOUT_WINGS names plan, but the wings are greeting, rig_planning and studies." in said.err
+
+
+def test_the_name_of_an_entry_point_is_a_name_of_its_wing(install, monkeypatch):
+    installed(install, "WING")
+    monkeypatch.setenv(WITHOUT, "wing")
+    look_again()
+    assert trisect("--help").err == "" and "is of the wing greeting" in trisect("greet").err
+
+
+def test_a_command_of_ours_whose_folder_is_gone_says_how_it_is_had(monkeypatch):
+    monkeypatch.setattr("core.wing.OURS", "core.no_such_folder")
+    look_again()
+    told = [trisect(command).err for command in OUR_COMMANDS]
+    monkeypatch.undo()
+    look_again()
+    assert all("which is not there; install Trisect with all its folders." in one for one in told)
 
 
 def test_where_the_folder_of_wings_is_gone_there_are_none():

@@ -15,8 +15,8 @@ from tests.wings.strangers import look_again
 
 OURS = tuple(sorted(path.parent.name for path in ROOT.glob("core/wings/*/wing.py")))
 NEEDS_A_WING = re.compile(r"\b(core|tests|workbench)\.wings\b")
-TABLES = {"tests/accuracy/bounds.py"}
-"""What makes all tables of accuracy, of house and wings: no test."""
+TABLES = {"tests/accuracy/bounds.py", "tests/workbench/screenshots.py"}
+"""What makes all tables of accuracy and all pictures of the manual, of house and wings: no test."""
 SAME = ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "scan.npz", "gauge.json")
 """Results that say nothing of when they were made."""
 

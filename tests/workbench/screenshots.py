@@ -31,8 +31,8 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from core.scan.surface.fused_surface import Mesh
 from core.simulate.scene.objects import gauge_block
 from core.translations import PSEUDO, language, languages
-from tests.study.grr_tables import AIAG
-from tests.study.spc_tables import PISTON_RINGS
+from tests.wings.studies.grr_tables import AIAG
+from tests.wings.studies.spc_tables import PISTON_RINGS
 from workbench.app import Application, build_window, speak
 from workbench.bench import Bench, make_bench
 from workbench.language import choose
@@ -187,6 +187,7 @@ def _make_report(app: QApplication, window: MainWindow) -> None:
 def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterator[str]:
     """Name after name of what there is to be seen on the inspect page, each shown before it is named."""
     inspect, page = cast(Any, window.presenters["inspect"]), cast(Any, window.pages["inspect"])
+    studies = page.brought["Studies"].studies
 
     def shown(tab: Any, feature: str = "") -> None:
         page.tabs.setCurrentWidget(tab)
@@ -203,25 +204,25 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
         ("plot", page.plot, "profile"),
         ("histogram", page.plot, "nominal"),
         ("repeats", page.series, ""),
-        ("no-studies", page.studies, ""),
+        ("no-studies", page.brought["Studies"], ""),
     ):
         shown(tab, feature)
         if feature:
             _side_to(page, page.features.form)
         yield name
-    inspect.studies.begin("grr")
-    inspect.studies.write(_published_study())
-    inspect.studies.set_value("tolerance_mm", 4.0)
+    studies.begin("grr")
+    studies.write(_published_study())
+    studies.set_value("tolerance_mm", 4.0)
     yield "study-editor"
-    inspect.studies.finish()
-    _wait(app, lambda: inspect.studies.study is not None, PATIENCE_S)
+    studies.finish()
+    _wait(app, lambda: studies.study is not None, PATIENCE_S)
     yield "studies"
-    inspect.studies.begin("series")
-    inspect.studies.write("\n".join(["value", *(f"{value:.3f}" for value in PISTON_RINGS.ravel())]))
+    studies.begin("series")
+    studies.write("\n".join(["value", *(f"{value:.3f}" for value in PISTON_RINGS.ravel())]))
     for key, value in (("name", "bore"), ("nominal_mm", 74.0), ("tolerance_mm", 0.05), ("size", 5)):
-        inspect.studies.set_value(key, value)
-    inspect.studies.finish()
-    _wait(app, lambda: inspect.studies.draft is None, PATIENCE_S)
+        studies.set_value(key, value)
+    studies.finish()
+    _wait(app, lambda: studies.draft is None, PATIENCE_S)
     _settle(app, bench, 1.0)
     yield "series"
     for key, value in (("primary", "table"), ("at 20 °C", True), ("with master", True), ("name", "Block 50 no. 7")):

@@ -10,6 +10,7 @@ import pytest
 from openpyxl import load_workbook
 from PySide6.QtWidgets import QApplication
 
+from core.checks.artefact_check import Artefact, ArtefactCheck
 from core.cli import output
 from core.files.exchange.xlsx import write_xlsx
 from core.messages import Message
@@ -17,7 +18,6 @@ from core.report.content import ReportContent
 from core.report.facts.fact import Reader, for_reader
 from core.report.pdf import build_report
 from core.report.wording import Words
-from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.check_cases import check
 from tests.report.report_samples import block_content
 from tests.report.test_report_pdf import words as pdf_words

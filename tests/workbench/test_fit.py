@@ -62,10 +62,12 @@ def fill_inspect_page(window: MainWindow, bench: Bench, qtbot: Any) -> None:
     inspect: Any = window.presenters["inspect"]
     qtbot.waitUntil(lambda: inspect.scan.view is not None, timeout=60_000)
     inspect.repeats.add()
-    inspect.studies.begin("grr")
-    inspect.studies.write("part;operator;value\n" + "".join(f"{i % 5};{i // 5 % 2};{i * i % 7}\n" for i in range(20)))
-    inspect.studies.finish()
-    qtbot.waitUntil(lambda: inspect.studies.study is not None, timeout=60_000)
+    page: Any = window.pages["inspect"]
+    if (tab := page.brought.get("Studies")) is not None:
+        tab.studies.begin("grr")
+        tab.studies.write("part;operator;value\n" + "".join(f"{i % 5};{i // 5 % 2};{i * i % 7}\n" for i in range(20)))
+        tab.studies.finish()
+        qtbot.waitUntil(lambda: tab.studies.study is not None, timeout=60_000)
     inspect.cut.show(True)
     inspect.cut.hide(1)
 

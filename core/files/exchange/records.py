@@ -17,7 +17,6 @@ from core.inspect.uncertainty.coverage import effective_dof
 from core.messages import Message
 from core.report.content import ReportContent
 from core.report.facts.fact import Fact
-from core.report.facts.of_studies import study_facts, study_tables, study_title
 from core.report.wording import Words
 
 Row = Mapping[str, Any]
@@ -63,9 +62,9 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
 def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fact]]:
     """List all facts of the studies, the values in their tables included, each with the name of its result."""
     return [
-        (study_title(study, words), fact)
+        (study.title(words), fact)
         for study in content.studies
-        for fact in (*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts(words)))
+        for fact in (*study.facts, *(fact for table in study.tables for fact in table.facts(words)))
     ]
 
 

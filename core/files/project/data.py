@@ -9,12 +9,12 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
+from core.checks.artefact_check import Artefact
 from core.files.recording.rig import Rig, default_rig
 from core.files.tables import Finite, KeptMessage, Time
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.report.template import Paper
 from core.settings.options import Options
-from core.study.artefact_check import Artefact
 from core.translations import languages
 
 # What project.json may hold in a field is checked as it is annotated here; `core.files.complaints` tells the rest.

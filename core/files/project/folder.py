@@ -13,6 +13,7 @@ Layout::
     PROJECT/recordings/             raw frames, one folder for each recording
     PROJECT/calibrations/           every calibration that was kept
     PROJECT/results/                what was measured, as `trisect run` writes it
+    PROJECT/studies/                studies that were kept, a folder for each; there only once one was
 """
 
 from __future__ import annotations
@@ -45,6 +46,8 @@ PROJECT = "project.json"
 AUTOSAVE = ".autosave.json"
 BACKUPS = "backups"
 RESULTS = "results"
+STUDIES, STUDY = "studies", "study.json"
+"""The folder of studies in a project, and the file of each: a wing writes and reads it."""
 OPENER = ".trisect"
 """How the file ends that a double click opens the project by: systems know what opens a file by the end of its name."""
 KEPT = 5
@@ -249,6 +252,11 @@ def source_folder(project_folder: Path, stored: str) -> Path | None:
 def results_folder(project_folder: Path) -> Path:
     """Return the path of the folder of results of a project."""
     return project_folder / RESULTS
+
+
+def study_path(project_folder: Path, id_: str) -> Path:
+    """Where the project keeps the study called `id_`."""
+    return project_folder / STUDIES / id_ / STUDY
 
 
 def results_in(path: Path) -> Path:

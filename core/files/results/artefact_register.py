@@ -29,6 +29,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from core.checks.artefact_check import Artefact, ArtefactKind
 from core.errors import InputError
 from core.files.atomic import make_folder, write_text
 from core.files.complaints import checked
@@ -38,7 +39,6 @@ from core.files.results.rig_history import own_folder
 from core.files.tables import OptionalDay, ShortText
 from core.files.toml_text import toml_text
 from core.messages import Message
-from core.study.artefact_check import Artefact, ArtefactKind
 
 REGISTER = "artefacts.toml"
 _HEAD = re.compile(r"^[ \t]*\[\[[ \t]*artefact[ \t]*\]\]", re.MULTILINE)

@@ -24,6 +24,8 @@ from pydantic import Field
 
 from core.calibrate.change import RigSpread, Stability
 from core.calibrate.rig_spread import FACTORS, most_likely_factor
+from core.checks.artefact_check import Artefact, ArtefactCheck, ArtefactKind
+from core.checks.control_chart import FEWEST, ControlChart, control_chart
 from core.files.atomic import make_folder
 from core.files.complaints import checked_json
 from core.files.json_text import write_json
@@ -33,8 +35,6 @@ from core.files.tables import RESULT, Finite, LengthAbove0, OptionalDay, OrNan, 
 from core.findings.proof import Doubt
 from core.inspect.uncertainty.coverage import coverage_factor
 from core.messages import Message
-from core.study.artefact_check import Artefact, ArtefactCheck, ArtefactKind
-from core.study.control_chart import FEWEST, ControlChart, control_chart
 
 DATA = "TRISECT_DATA"
 """Environment variable that names another folder than the user's own, as one that a laboratory shares."""

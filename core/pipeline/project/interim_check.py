@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from core.calibrate.results import ProposedReadjustment
+from core.checks.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
@@ -35,7 +36,6 @@ from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Calibration, Workspace, staged
 from core.progress import Progress, silent
-from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 
 CHECK = "check"
 """The folder in the project that its result goes to: a scan among the results stays as it is."""

@@ -7,14 +7,15 @@ from pathlib import Path
 
 from core.files.project.audit import read_trail
 from core.files.project.data import Project
-from core.files.project.folder import results_folder
+from core.files.project.folder import results_folder, study_path
 from core.files.project.report_template import read_report_template
 from core.files.project.view_file import read_view
 from core.files.recording.picture_reader import PictureReader
-from core.files.study.study_file import study_path
+from core.findings.table import note_of
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
-from core.pipeline.steps.report_step import report_content, report_step, with_studies
+from core.pipeline.steps.brought_sections import study_reader, with_studies
+from core.pipeline.steps.report_step import report_content, report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.report.content import AuditMark, RepeatLine, ReportContent
@@ -62,7 +63,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
     """
     info, choices = project.info, project.report
     template = read_report_template(folder / choices.template) if choices.template else ReportTemplate()
-    content = with_studies(content, [study_path(folder, one.id) for one in project.studies if one.included])
+    content = _with_kept_studies(content, folder, project)
     return replace(
         content,
         serial=info.serial,
@@ -90,6 +91,15 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         audit=_audit_mark(folder),
         view=read_view(folder),
     )
+
+
+def _with_kept_studies(content: ReportContent, folder: Path, project: Project) -> ReportContent:
+    """The content with the project's studies that are ticked; where no wing reads them, a note tells it."""
+    kept = [one for one in project.studies if one.included]
+    if kept and study_reader() is None:
+        note = note_of("plugin.studies_not_printed", names=[one.title for one in kept])
+        return replace(content, notes=(*content.notes, note))
+    return with_studies(content, [study_path(folder, one.id) for one in kept])
 
 
 def _audit_mark(folder: Path) -> AuditMark | None:

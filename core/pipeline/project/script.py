@@ -13,12 +13,13 @@ from pathlib import Path
 from string import Template
 from typing import Any, TypeAlias
 
+from core.checks.artefact_check import ArtefactCheck
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.plan.translation import plan_tables
 from core.files.project.calibration_store import IMPORTED
 from core.files.project.data import Project, ProjectFile
-from core.files.project.folder import read_project, results_folder, source_folder
+from core.files.project.folder import read_project, results_folder, source_folder, study_path
 from core.files.project.keys import changed, inputs_of, relocated
 from core.files.reading import resolved
 from core.files.recording.rig import rig_to_toml
@@ -26,7 +27,6 @@ from core.files.results.artefact_register import REGISTER, register_text
 from core.files.results.nominal_surface import nominal_names
 from core.files.results.run_file import RunRecord, read_run
 from core.files.step_graph import FILES
-from core.files.study.study_file import study_path
 from core.files.toml_text import toml_text
 from core.messages import Message, label
 from core.pipeline.project.workspace import part_name, project_set, rig_in_its_air
@@ -36,7 +36,6 @@ from core.pipeline.steps.workspace import read_calibration
 from core.report.wording import Words
 from core.settings.options import settings_of
 from core.settings.setting import rows_within
-from core.study.artefact_check import ArtefactCheck
 
 SET, OUT, RIG, PLAN = "set", "results", "rig.toml", "plan.toml"
 """What the script makes in the folder it is run in."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from core.checks.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import taken_at
@@ -20,7 +21,6 @@ from core.inspect.characteristic import Characteristic
 from core.messages import Message
 from core.pipeline.steps.validity import history_name, history_of
 from core.pipeline.steps.workspace import Workspace, check_calibration
-from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 
 _MEASURED_AS: Mapping[ArtefactKind, tuple[str, str]] = {
     "block": ("thickness", "thickness"),

@@ -1,17 +1,23 @@
-"""The sections that wings bring to the report."""
+"""What wings bring to the report: sections of their own, and the studies they read."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from core.door import found_at
+from core.errors import InputError
+from core.files.project.folder import STUDY
 from core.findings.brought import OURS, failure
 from core.messages import Message
-from core.report.content import BroughtSection, ReportContent
+from core.report.content import BroughtSection, ReportContent, ReportedStudy
 from core.report.facts.fact import Fact
 from core.report.wording import Words
-from core.wing import wings
+from core.wing import how_to_get, wings
+
+STUDIES = "studies"
+"""Our own wing that reads studies."""
 
 
 def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
@@ -29,6 +35,32 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
     if not sections and not failed:
         return content
     return replace(content, brought=tuple(sections), notes=(*content.notes, *failed))
+
+
+def study_reader() -> Callable[[Path], ReportedStudy] | None:
+    """What reads a study.json for the report; None where no wing does."""
+    places = (wing.reads_study for wing in wings() if wing.reads_study)
+    return next((found_at(place) for place in places), None)
+
+
+def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
+    """The content with the studies in `paths`, each a study.json or its folder.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read, or no wing that reads them is there.
+    """
+    if not paths:
+        return content
+    read = study_reader()
+    if read is None:
+        what = Message(
+            "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
+        )
+        raise InputError(what, where=paths[0], todo=how_to_get(STUDIES))
+    found = tuple(read(path / STUDY if path.is_dir() else path) for path in paths)
+    return replace(content, studies=(*content.studies, *found))
 
 
 def _try(title: str, facts: tuple[Fact, ...]) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core import __version__
+from core.checks.artefact_check import ArtefactCheck
 from core.errors import InputError
 from core.files.arrays_file import read_arrays
 from core.files.atomic import write_bytes
@@ -34,8 +35,6 @@ from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
 from core.files.step_graph import FILES
-from core.files.study.study_file import NAME as STUDY
-from core.files.study.study_file import read_study
 from core.image.display import in_8_bit
 from core.image.stripes.centreline import Centreline
 from core.inspect.plan.feature_spec import Deviation
@@ -57,7 +56,6 @@ from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.second_process import SecondProcess
 from core.settings.options import settings_of
-from core.study.artefact_check import ArtefactCheck
 
 METHOD_IN_WORDS: dict[str, str] = {
     Method.NETWORK: label(
@@ -379,12 +377,6 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
         deviations=_deviations(path, file, content.camera.camera),
         notes=tuple(dict.fromkeys((*content.notes, *file.notes, *file.problems))),
     )
-
-
-def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
-    """Add the studies in `paths` to the content, each a study.json or its folder; InputError if one cannot be read."""
-    read = tuple(read_study(path / STUDY if path.is_dir() else path) for path in paths)
-    return replace(content, studies=(*content.studies, *read)) if read else content
 
 
 def _deviations(path: Path, file: InspectionFile, camera: Camera) -> tuple[Deviations, ...]:

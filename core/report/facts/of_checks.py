@@ -8,13 +8,13 @@ from datetime import datetime
 from typing import Protocol
 
 from core.calibrate.results import ProposedReadjustment
+from core.checks.artefact_check import KINDS, ArtefactCheck
+from core.checks.control_chart import ControlChart
 from core.messages import Message, decimals_of, label, plain, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, Value, named
 from core.report.facts.pictures import Picture, used_fact
 from core.report.facts.table import Cell, Column, FactTable, Uncertain
 from core.states import CHECKS, VERDICT
-from core.study.artefact_check import KINDS, ArtefactCheck
-from core.study.control_chart import ControlChart
 
 GRADES: dict[str, Grade] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
 PROBABILITY = label("Probability that noise and the calibrations' uncertainty alone would set the stripes as far off")

@@ -7,7 +7,7 @@ import math
 from core.inspect.characteristic import Characteristic
 from core.messages import Message, decimals_of, label
 from core.report.facts.fact import Fact, Reader
-from core.report.facts.of_studies import verdict_fact
+from core.report.facts.of_verdict import verdict_fact
 from core.report.wording import Words, permitted, result_name, shown_unit, with_unit
 from core.states import VERDICT
 

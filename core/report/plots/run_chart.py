@@ -1,4 +1,4 @@
-"""Values in the order of measuring: the run chart with its histogram, and the two control charts of a series."""
+"""Values in the order of measuring: the run chart with its histogram."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from core.checks.repeats import histogram
 from core.messages import label
 from core.report.content import RepeatLine
-from core.report.layout.style import INK, MUTED, ReportLook
+from core.report.layout.style import MUTED, ReportLook
 from core.report.plots.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
-from core.study.repeats import histogram
-from core.study.series_chart import Chart
 
 LEFT_MM, WORDS_MM, HISTOGRAM_MM = 15.0, 34.0, 22.0
 """Room for the axis, for the words beside the lines, and for the histogram."""
@@ -78,56 +77,8 @@ def run_chart_figure(
         if beside:
             place = ((LEFT_MM + chart_mm + 2) / width_mm, foot, (beside - 2) / width_mm, height)
             last = _histogram(look, figure.add_axes(place, sharey=axes), values)
-        _lines(look, axes, last, lines)
+        draw_lines(look, axes, last, lines)
     return figure
-
-
-def control_charts_figure(
-    look: ReportLook, charts: Mapping[str, Chart], unit: str, width_mm: float, height_mm: float
-) -> Figure:
-    """Draw control charts one above the other, by the names of their points.
-
-    A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
-    """
-    with plot_style():
-        figure = new_figure(width_mm, height_mm)
-        each, count = height_mm / len(charts), max(len(chart.points) for chart in charts.values())
-        for place, (name, chart) in enumerate(charts.items()):
-            last = place == len(charts) - 1
-            foot, height = (len(charts) - 1 - place) * each + (9 if last else 5), each - (11 if last else 7)
-            room = (width_mm - LEFT_MM - WORDS_MM) / width_mm
-            axes = figure.add_axes((LEFT_MM / width_mm, foot / height_mm, room, height / height_mm))
-            _control_chart(look, axes, chart, count)
-            axes.set_ylabel(look.words.in_unit(look.words(name), unit), labelpad=2)
-        axes.set_xlabel(look.words("number of the point"), labelpad=1)
-    return figure
-
-
-def _control_chart(look: ReportLook, axes: Axes, chart: Chart, count: int) -> None:
-    values = chart.points
-    numbers = np.arange(count - len(values), count) + 1
-    rules: dict[int, list[str]] = {}
-    for one in chart.breaks:
-        rules.setdefault(one.place, []).append(str(one.rule))
-    steady = np.array([place not in chart.breaking for place in range(len(values))])
-    axes.plot(numbers, values, "-", color=look.accent, lw=0.6)
-    axes.plot(numbers[steady], values[steady], "o", color=look.accent, ms=3, zorder=4)
-    axes.plot(numbers[~steady], values[~steady], "x", color=INK, ms=5, mew=1.2, zorder=5)
-    for place, broken in rules.items():
-        at, said = (numbers[place], values[place]), ", ".join(broken)
-        axes.annotate(said, at, (0, 4), textcoords="offset points", ha="center", color=INK)
-    axes.set_xlim(0.5, count + 0.5)
-    axes.margins(y=0.15)
-    axes.ticklabel_format(axis="y", useOffset=False)
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.yaxis.set_major_locator(MaxNLocator(4))
-    axes.spines[["top", "right"]].set_visible(False)
-    lines = {
-        label("mean"): chart.centre,
-        label("upper control limit"): chart.upper,
-        label("lower control limit"): chart.lower,
-    }
-    _lines(look, axes, axes, lines)
 
 
 def _histogram(look: ReportLook, axes: Axes, values: Sequence[float]) -> Axes:
@@ -144,7 +95,7 @@ def _histogram(look: ReportLook, axes: Axes, values: Sequence[float]) -> Axes:
     return axes
 
 
-def _lines(look: ReportLook, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
+def draw_lines(look: ReportLook, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
     """The lines to compare with, across all axes, and their words behind the last ones."""
     tones = [look.accent] + [MUTED] * len(lines)
     for value, form, tone in zip(lines.values(), ("-", *FORMS), tones, strict=False):

@@ -8,6 +8,7 @@ from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
+from core.checks.artefact_check import KINDS
 from core.findings.table import is_grave
 from core.messages import label, plural_message
 from core.model.certificate import Certificate
@@ -34,7 +35,6 @@ from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_table, fan_table, marks_table
 from core.report.wording import grouped, short_hash
-from core.study.artefact_check import KINDS
 
 
 def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:

@@ -9,7 +9,7 @@ from reportlab.platypus import Flowable
 
 from core.messages import decimals_of, label
 from core.report.content import RepeatLine, ReportContent
-from core.report.facts.of_studies import repeat_facts
+from core.report.facts.of_repeats import repeat_facts
 from core.report.layout.blocks import Cell, figures, heads, more_line, ruled_table
 from core.report.layout.style import ReportLook
 

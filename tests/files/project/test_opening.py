@@ -11,6 +11,7 @@ from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.options import CameraOptions
 from core.calibrate.change import Stability
 from core.calibrate.drift import Air, Drift
+from core.checks.artefact_check import Artefact
 from core.errors import InputError
 from core.files.project import json_form as project_json
 from core.files.project.data import (
@@ -47,7 +48,6 @@ from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message, plain
 from core.model.certificate import Certificate
 from core.settings.options import Options
-from core.study.artefact_check import Artefact
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
 POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])

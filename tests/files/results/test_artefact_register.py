@@ -4,6 +4,7 @@ from datetime import date
 
 import pytest
 
+from core.checks.artefact_check import Artefact
 from core.errors import InputError
 from core.files.results.artefact_register import (
     REGISTER,
@@ -14,7 +15,6 @@ from core.files.results.artefact_register import (
     store_own,
 )
 from core.files.results.rig_history import own_folder
-from core.study.artefact_check import Artefact
 
 BLOCK = '[[artefact]]\nid = "GB 50-7"\nvalue_mm = 50.0003\nU_mm = 0.0004\ncertificate = "D-K-15070"\ndue = 2028-03-01\n'
 

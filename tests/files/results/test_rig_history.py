@@ -7,12 +7,12 @@ import pytest
 
 from core.calibrate.change import DEFAULT_STABILITY, STABLE
 from core.calibrate.rig_spread import FACTORS
+from core.checks.artefact_check import Artefact, ArtefactCheck
+from core.checks.control_chart import FEWEST
 from core.cli.output import history_rows
 from core.errors import InputError
 from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, read_history, store_check
 from core.findings.proof import Doubt
-from core.study.artefact_check import Artefact, ArtefactCheck
-from core.study.control_chart import FEWEST
 from tests.check_cases import check, nowhere
 
 FIRST = PastCheck.of(check(), 21.5)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from core.checks.artefact_check import Artefact
 from core.errors import Cancelled, InputError
 from core.files.project.calibration_store import history, store_camera, store_planes
 from core.files.project.data import Accepted
@@ -26,7 +27,6 @@ from core.pipeline.project.interim_check import (
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import read_calibration
 from core.settings.options import Options
-from core.study.artefact_check import Artefact
 from tests.pipeline.steps.test_check_step import RIG, prepared
 from tests.simulated import copy_of
 

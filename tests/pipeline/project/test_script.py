@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from core.checks.artefact_check import Artefact
 from core.cli import main
 from core.errors import InputError
 from core.files.project.data import ProjectFile, ReportChoices
@@ -26,7 +27,6 @@ from core.pipeline.project.report import make_report
 from core.pipeline.project.script import write_script
 from core.pipeline.steps.validity import history_name, history_of
 from core.pipeline.steps.workspace import read_calibration
-from core.study.artefact_check import Artefact
 from tests.pipeline.project.test_measuring import MEASURED
 from tests.simulated import copy_of
 

@@ -14,6 +14,7 @@ import pytest
 
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, STABLE, displaced_fan
+from core.checks.artefact_check import Artefact
 from core.errors import InputError
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.recording.picture_reader import PictureReader
@@ -52,7 +53,6 @@ from core.scan.part_light import blur_of
 from core.settings.options import Options
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
-from core.study.artefact_check import Artefact
 from tests.shared import made_once
 from tests.simulated import trisect
 

@@ -1,4 +1,4 @@
-"""What a report takes from inspection.json and study.json."""
+"""What a report takes from inspection.json."""
 
 import json
 import math
@@ -10,7 +10,6 @@ import pytest
 from core.errors import InputError
 from core.files.arrays_file import write_arrays
 from core.files.results.inspection_file import write_inspection
-from core.files.study.study_file import write_study
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.evaluate import Inspection
@@ -18,9 +17,8 @@ from core.inspect.features.measured import FeatureResult
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.pipeline.steps.report_step import with_inspection, with_studies
+from core.pipeline.steps.report_step import with_inspection
 from core.report.content import CalibrationMark
-from core.study.type1 import Type1Study, type1_study
 from tests.report.report_samples import block_content
 
 
@@ -109,13 +107,3 @@ def test_points_that_are_not_in_the_cloud_are_refused(tmp_path, content):
     small = replace(content, cloud=content.cloud.select(np.arange(20)), gauge=None, mesh=content.mesh)
     with pytest.raises(InputError, match="top names points that the cloud does not have"):
         with_inspection(small, tmp_path)
-
-
-def test_a_study_is_printed_from_its_file(tmp_path, content):
-    values = 50 + np.linspace(-0.01, 0.012, 25)
-    write_study(tmp_path, type1_study(values, 50.0, 0.4))
-    (study,) = with_studies(content, [tmp_path / "study.json"]).studies
-    (by_folder,) = with_studies(content, [tmp_path]).studies
-    assert isinstance(study, Type1Study) and study.mean == by_folder.mean == pytest.approx(50.001)
-    with pytest.raises(InputError, match=r"missing\.json"):
-        with_studies(content, [tmp_path / "missing.json"])

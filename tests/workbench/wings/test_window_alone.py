@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
+from PySide6.QtWidgets import QMainWindow
+from pytestqt.qtbot import QtBot
 
 from core.door import WITHOUT
 from tests.code import ROOT
 from tests.wings.strangers import look_again
+from workbench.bench import Bench
 from workbench.main_window import MainWindow
-from workbench.wing import window_wings
+from workbench.wing import WindowWing, opened_by_entries, window_wings
 
 OURS = tuple(sorted(path.parent.name for path in ROOT.glob("workbench/wings/*/wing.py")))
 
 
 @pytest.fixture(params=OURS)
-def taken_away(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[set[str]]:
-    """The entries of a wing that is taken away."""
-    entries = {entry.name for wing in window_wings() if wing.name == request.param for entry in wing.entries}
-    monkeypatch.setenv(WITHOUT, str(request.param))
+def taken_away(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[WindowWing]:
+    """A wing that is taken away."""
+    (taken,) = (wing for wing in window_wings() if wing.name == request.param)
+    monkeypatch.setenv(WITHOUT, taken.name)
     look_again()
-    yield entries
+    yield taken
     monkeypatch.undo()
     look_again()
 
@@ -30,11 +34,32 @@ def test_every_folder_of_a_wing_is_found() -> None:
     assert tuple(sorted(wing.name for wing in window_wings())) == OURS
 
 
-def test_the_window_opens_without_it(taken_away: set[str], window: MainWindow) -> None:
-    assert taken_away and not taken_away & window.menus.actions.keys()
+def test_the_window_opens_without_it(taken_away: WindowWing, window: MainWindow) -> None:
+    page: Any = window.pages["inspect"]
+    entries, tabs = {one.name for one in taken_away.entries}, {one.title for one in taken_away.tabs}
+    assert entries or tabs or taken_away.below_repeats
+    assert not entries & window.menus.actions.keys() and not tabs & page.brought.keys()
+    assert len(page.series.parts) == sum(bool(wing.below_repeats) for wing in window_wings())
     assert "many sets" in window.menus.actions and window.bench.notices.all == []
 
 
 def test_with_it_its_entries_stand_where_it_says(window: MainWindow) -> None:
     names = list(window.menus.actions)
     assert names.index("plan rig") == names.index("console") + 1
+
+
+def test_with_it_its_tab_and_what_is_below_the_repeats_are_there(window: MainWindow) -> None:
+    page: Any = window.pages["inspect"]
+    assert [page.tabs.tabText(place) for place in range(page.tabs.count())][-1] == "Studies" == next(iter(page.brought))
+    assert len(page.series.parts) == 1
+
+
+def test_a_name_of_no_wing_is_told_in_the_window(
+    monkeypatch: pytest.MonkeyPatch, hand_bench: Bench, qtbot: QtBot
+) -> None:
+    monkeypatch.setenv(WITHOUT, "rig_planing")
+    window = QMainWindow()
+    qtbot.addWidget(window)
+    opened_by_entries(hand_bench, window)
+    (notice,) = hand_bench.notices.all
+    assert notice.text == "TRISECT_WITHOUT_WINGS names rig_planing, but the wings are rig_planning and studies."

@@ -21,11 +21,11 @@ from workbench.pages.inspect.picture import PictureTab
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.repeats.tab import RepeatsTab
 from workbench.pages.inspect.stage import Stage
-from workbench.pages.inspect.studies.tab import StudiesTab
 from workbench.pages.inspect.surface import SurfaceTab
 from workbench.pages.step_page import StepPage
 from workbench.views.layouts import Tabs
 from workbench.views.stage_card import CardButton, StageCard
+from workbench.wing import inspect_tabs, repeats_parts
 
 REPEATS, PLOT = 2, 3
 """Places of these tabs."""
@@ -46,16 +46,20 @@ class InspectPage(StepPage):
         super().__init__(presenter, parent)
         self.tabs = Tabs()
         self.surface, self.picture = SurfaceTab(presenter), PictureTab(presenter)
-        self.series = RepeatsTab(presenter.repeats)
-        self.plot, self.studies = PlotTab(presenter.features, presenter.feature), StudiesTab(presenter.studies)
+        self.series = RepeatsTab(presenter.repeats, repeats_parts(presenter.bench, presenter))
+        self.plot = PlotTab(presenter.features, presenter.feature)
         for tab, title, tip in (
             (self.surface, tr("Surface"), tr("The measured points and the mesh in 3D")),
             (self.picture, tr("Picture"), tr("The two faces in the camera's picture; draw regions here")),
             (self.series, tr("Repeats"), tr("The thickness over several scans of the part")),
             (self.plot, tr("Plot"), tr("The profile or the deviations of the chosen feature")),
-            (self.studies, tr("Studies"), tr("How good the way of measuring is: gauge R&R, acceptance")),
         ):
             self.tabs.add(tab, title, tip)
+        self.brought: dict[str, Any] = {}
+        """The tabs of the wings, by their titles in English."""
+        for one, made in inspect_tabs(presenter.bench, presenter):
+            self.brought[one.title] = made
+            self.tabs.add(made, tr(one.title), tr(one.tip))
         self.centre.addWidget(self.tabs, 1)
         self.card = StageCard(
             [

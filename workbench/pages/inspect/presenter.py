@@ -35,7 +35,6 @@ from workbench.pages.inspect.picks import InspectPicks, Mode
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.inspect.stage import Facts, Stage, WhyNot, stage_of, why_not_measure
-from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import State
 from workbench.work import jobs
@@ -75,7 +74,6 @@ class InspectPresenter(StepPresenter):
         self.faces, self.picks = InspectFaces(self.model, self.scan), InspectPicks(self.scan)
         self.part = InspectPart(self.model)
         self.repeats = InspectRepeats(bench, self.scan, self.faces)
-        self.studies = InspectStudies(bench, self.repeats)
         self.features = InspectFeatures(bench, self.scan)
         self.feature = InspectFeatureEdit(self.features, self.scan)
         self.clicked = InspectClicked(self.features, self.scan)
@@ -88,7 +86,7 @@ class InspectPresenter(StepPresenter):
             lambda: self.scan.gauge is not None and not self.scan.is_thickness_old,
         )
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
-        for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked, self.comparison):
+        for part in (self.faces, self.picks, self.repeats, self.features, self.clicked, self.comparison):
             part.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(self._look_at_scan)
@@ -337,7 +335,6 @@ class InspectPresenter(StepPresenter):
         self._just_measured = False
         self.faces.forget()
         self.features.forget()
-        self.studies.forget()
         self.scan.forget()
         self.scan.look(seen=self._seen)
 

@@ -10,9 +10,9 @@ from typing import cast
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialog, QLabel, QPushButton, QWidget
 
+from core.checks.artefact_check import KINDS, Artefact, ArtefactKind
 from core.messages import capital
 from core.report.wording import with_uncertainty
-from core.study.artefact_check import KINDS, Artefact, ArtefactKind
 from workbench.language import number, tr
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.words import wording

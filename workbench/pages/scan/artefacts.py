@@ -8,9 +8,9 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
+from core.checks.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from core.files.project.keys import up_to_date
 from core.files.results.rig_history import CheckChart
-from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.scan.stage import why_not_compare

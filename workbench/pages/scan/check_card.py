@@ -10,6 +10,8 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 
 from core.calibrate.results import ProposedReadjustment
+from core.checks.artefact_check import ArtefactCheck
+from core.checks.control_chart import ControlChart
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import CheckChart, PastCheck, RigHistory
 from core.messages import capital
@@ -18,8 +20,6 @@ from core.report.facts.fact import Fact, named
 from core.report.facts.of_checks import GRADES, artefact_facts, check_facts, readjustment_facts
 from core.report.facts.pictures import left_out
 from core.states import CHECKS, OUT_OF_DATE, STEP_STATES, changed_since
-from core.study.artefact_check import ArtefactCheck
-from core.study.control_chart import ControlChart
 from workbench.language import joined, number, sentence, sentences, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog

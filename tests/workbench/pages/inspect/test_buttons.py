@@ -15,7 +15,6 @@ from workbench.pages.inspect.stage import (
     picks_buttons,
     surface_buttons,
 )
-from workbench.pages.inspect.studies.studies import StudiesFacts, studies_buttons
 
 BOOLS, WHY = (False, True), ("", "Why not.")
 
@@ -119,20 +118,3 @@ def test_features_are_measured_removed_moved_and_saved_where_there_are_some() ->
         for reason, there in ((can.up, facts.place - 1), (can.down, facts.place + 1)):
             assert (reason == "") == (facts.place >= 0 and 0 <= there < facts.count), facts
         assert (can.save == "") == (facts.count > 0), facts
-
-
-STUDIES = [StudiesFacts(*v) for v in product(("", "Reading the table"), WHY, WHY, BOOLS, BOOLS)]
-
-
-@pytest.mark.parametrize("facts", STUDIES, ids=str)
-def test_studies_are_made_one_at_a_time_and_of_something(facts: StudiesFacts) -> None:
-    can = studies_buttons(facts)
-    assert are_sentences(can)
-    free, kept = not facts.busy, not (facts.busy or facts.cannot_write)
-    assert (can.begin == "") == kept, "what cannot be kept is not begun"
-    assert (can.type1 == "") == (kept and not facts.no_type1)
-    assert (can.make == "") == (kept and facts.rows)
-    assert (can.remove == "") == (can.export == "") == (free and facts.chosen)
-    assert (can.read == "") == free
-    if facts.busy:
-        assert can.read == "Wait for what is under way: Reading the table.", "it is named"

@@ -650,16 +650,6 @@ def test_repeats_of_several_calibrations_are_pointed_out(shown):
     assert shown.series.words.text().startswith("Measured with 2 different calibrations")
 
 
-def test_the_repeats_are_studied_beside_their_chart(shown, qtbot):
-    repeats = tuple(cases.repeat(number, 50.0 + 0.01 * number) for number in range(2, 6))
-    shown.presenter.model.edit("repeats", replace(shown.presenter.project, repeats=repeats))
-    shown.tabs.setCurrentWidget(shown.series)
-    qtbot.waitUntil(lambda: shown.series.type1.text_of("Verdict") == "not capable")
-    assert shown.series.type1.text_of("Tolerance T") == "0.4 mm"
-    assert "4 repeats say little" in shown.series.type1_words.text()
-    assert len(shown.series.histogram._values) == 4
-
-
 def test_the_chart_of_the_repeats_shows_its_axis_in_the_lowest_window(shown, qtbot):
     shown.tabs.setCurrentWidget(shown.series)
     shown.resize(760, 380)

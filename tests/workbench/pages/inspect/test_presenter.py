@@ -11,8 +11,7 @@ from core.files.project.data import Accepted
 from core.files.project.keys import finished
 from core.inspect.results import PairCandidate
 from core.inspect.uncertainty.part import MATERIALS, Part
-from core.report.facts.of_studies import repeat_facts, study_facts
-from core.study.type1 import type1_study
+from core.report.facts.of_repeats import repeat_facts
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.part import MATERIAL_NAMES
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
@@ -511,23 +510,6 @@ def test_the_series_is_copied_with_all_digits(shown):
         "repeats", "mean [mm]", "s (n − 1) [mm]", "nominal [mm]", "bias [mm]", "largest error [mm]", "RMSE [mm]",
     ]  # fmt: skip
     assert lines[5].split("\t")[1] == "50.056173", "all its digits"
-
-
-def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown, qtbot):
-    values = (50.012, 50.018, 50.007, 50.011)
-    put_repeats(shown, values[:1])
-    assert "needs two repeats" in shown.repeats.no_type1
-    put_repeats(shown, values)
-    shown.repeats.study()
-    qtbot.waitUntil(lambda: shown.repeats.type1 is not None)
-    told, wanted = shown.repeats.type1, type1_study(values, 50.0, 0.4)
-    assert (told.cg, told.cgk, told.p) == (wanted.cg, wanted.cgk, wanted.p)
-    assert f"Cgk\t{wanted.cgk:.6f}" in repeats_tsv(shown.project.repeats, study_facts(told))
-    shown.faces.set_number("tolerance_mm", 0.1)
-    assert shown.repeats.type1 is None, "it is of another tolerance"
-    shown.faces.set_number("tolerance_mm", None)
-    shown.faces.set_number("nominal_mm", None)
-    assert "needs a reference part" in shown.repeats.no_type1
 
 
 def put_repeats(presenter, values):

@@ -7,11 +7,11 @@ from typing import cast
 import pytest
 from PySide6.QtCore import Qt
 
+from core.checks.artefact_check import Artefact, ArtefactCheck
 from core.errors import InputError
 from core.files.project.folder import read_project
 from core.files.project.keys import finished
 from core.files.results.artefact_register import own_register, store_own
-from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.workbench.hand_lane import HandLane
 from workbench.notices import Level
 from workbench.pages.scan.artefact_dialog import ArtefactDialog

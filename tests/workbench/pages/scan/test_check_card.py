@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 
 from core.calibrate.results import CameraCalibration, FanCalibration, ProposedReadjustment, Readjustment
 from core.calibrate.sitting import Acquisition
+from core.checks.artefact_check import Artefact, ArtefactCheck
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
@@ -19,7 +20,6 @@ from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
 from core.pipeline.live.rig_check import rig_check
 from core.scan.preview.preflight import Check
-from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage

@@ -4,26 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 from PySide6.QtCore import QObject, Signal
 
+from core.checks.repeats import RepeatStatistics, repeat_statistics
 from core.files.project.data import Repeat
 from core.files.recording.rig import GaugeSpec
-from core.findings.proof import Doubt
 from core.states import OUT_OF_DATE
-from core.study.doubted import Doubted, doubted_among
-from core.study.repeats import RepeatStatistics, repeat_statistics
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.inspect.faces import InspectFaces
 from workbench.pages.inspect.scan import InspectScan
 from workbench.reasons import first, why
 from workbench.step_state import State
-from workbench.work import jobs
-
-if TYPE_CHECKING:
-    from core.study.type1 import Type1Study
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +82,6 @@ class InspectRepeats(QObject):
     def __init__(self, bench: Bench, scan: InspectScan, faces: InspectFaces) -> None:
         super().__init__()
         self._bench, self._model, self._scan, self._faces = bench, bench.model, scan, faces
-        self._type1: Type1Study | None = None
-        self._type1_of: object = None
-        self._asked: object = None
 
     @property
     def all(self) -> tuple[Repeat, ...]:
@@ -153,58 +144,6 @@ class InspectRepeats(QObject):
         if not self.all:
             return None
         return repeat_statistics([repeat.thickness_mm for repeat in self.all], self.spec.nominal_mm)
-
-    @property
-    def type1(self) -> Type1Study | None:
-        """Type-1 study of the repeats against the tolerance; None as long as there is none."""
-        return self._type1 if self._type1_of == self._type1_wanted() else None
-
-    @property
-    def no_type1(self) -> str:
-        """Reason why there is no type-1 study, or ""."""
-        spec = self.spec
-        if spec.nominal_mm is None or spec.tolerance_mm is None:
-            return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
-        if len(self.all) < 2:
-            return tr("A type-1 study needs two repeats; take at least 25, better 50.")
-        return ""
-
-    def study(self) -> None:
-        """Compute the type-1 study, unless it is there or being computed."""
-        wanted, spec = self._type1_wanted(), self.spec
-        if self.no_type1 or spec.tolerance_mm is None or wanted in (self._type1_of, self._asked):
-            return
-        self._asked = wanted
-
-        def done(study: Any) -> None:
-            self._type1, self._type1_of = study, wanted
-            self.changed.emit()
-
-        def ended(*_: Any) -> None:
-            self._asked = None if self._asked == wanted else self._asked
-
-        task = self._bench.run_quick(
-            self,
-            jobs.TYPE1_STUDY,
-            [repeat.thickness_mm for repeat in self.all],
-            spec.nominal_mm,
-            2 * spec.tolerance_mm,
-            self.doubted,
-            label=tr("Studying the repeats"),
-            on_done=done,
-            offers={},
-        )
-        task.ended.connect(ended)
-
-    def _type1_wanted(self) -> object:
-        spec = self.spec
-        values = tuple((repeat.thickness_mm, repeat.doubts) for repeat in self.all)
-        return values, spec.nominal_mm, spec.tolerance_mm
-
-    @property
-    def doubted(self) -> Doubted:
-        """Repeats whose results prove nothing."""
-        return doubted_among((repeat.scan, tuple(map(Doubt.named, repeat.doubts))) for repeat in self.all)
 
     def calibrations(self) -> int:
         """Count the different calibrations they were measured with."""

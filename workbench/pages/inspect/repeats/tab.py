@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
@@ -10,28 +11,17 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QSplitter, 
 
 from core.files.project.data import Repeat
 from core.report.facts.fact import Fact
-from core.report.facts.of_studies import repeat_facts, study_facts
-from core.study.study import KINDS
-from workbench.language import text_of, tr
+from core.report.facts.of_repeats import repeat_facts
+from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.words import show_facts
 from workbench.theme import icon
-from workbench.views.layouts import (
-    STRETCH,
-    Folding,
-    Tabs,
-    UpAndDown,
-    enable,
-    heading,
-    in_column,
-    in_row,
-    muted,
-    set_text,
-)
+from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, in_column, in_row, muted, set_text
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
+from workbench.wing import RepeatsPart
 
 ROWS_PX = 230
 """Least width of the statistics."""
@@ -44,14 +34,14 @@ CALIBRATION = 3
 class RepeatsTab(QWidget):
     """Tab with all repeats of the project and their statistics."""
 
-    def __init__(self, repeats: InspectRepeats, parent: QWidget | None = None) -> None:
+    def __init__(self, repeats: InspectRepeats, parts: Sequence[Any] = (), parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._repeats = repeats
+        self.parts: Sequence[RepeatsPart] = parts
         self._shown: object = None
         self.table, self.chart, self.words = DataTable(), RunChart(), muted()
         self.rows = ValueRows(least_width=ROWS_PX)
-        self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
-        self.type1_title = heading(tr(KINDS["type1"]))
+        self.histogram = Histogram()
         self.table.set_headers(
             [
                 (tr("Scan"), ""),
@@ -80,7 +70,7 @@ class RepeatsTab(QWidget):
         self.charts.add(self.histogram, tr("Histogram"))
         self.charts.setMinimumSize(*CHART_PX)
         self.charts.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # as high as there is room
-        numbers = in_column(self.rows, self.type1_title, self.type1, self.type1_words, STRETCH, margins=(0, 6, 0, 0))
+        numbers = in_column(self.rows, *parts, STRETCH, margins=(0, 6, 0, 0))
         self.below = UpAndDown(Folding(in_row(self.charts, margins=(0, 6, 0, 0)), numbers, spacing=14))
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
@@ -94,7 +84,8 @@ class RepeatsTab(QWidget):
         repeats, spec = self._repeats, self._repeats.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
-        self._show_type1()
+        for part in self.parts:
+            part.refresh()
         set_text(self.words, self._sentence())
         if wanted == self._shown:
             return
@@ -129,20 +120,6 @@ class RepeatsTab(QWidget):
         statistics = self._repeats.statistics()
         return () if statistics is None else repeat_facts(statistics, nominal=self._repeats.spec.nominal_mm)
 
-    def _of_type1(self) -> Sequence[Fact]:
-        study = self._repeats.type1
-        return () if study is None else study_facts(study)
-
-    def _show_type1(self) -> None:
-        """The study where there can be one; else what it needs, as soon as there is a repeat."""
-        repeats = self._repeats
-        repeats.study()
-        study = repeats.type1
-        self.type1_title.setVisible(study is not None)
-        show_facts(self.type1, self._of_type1())
-        said = repeats.no_type1 if study is None else "\n".join(map(text_of, study.notes))
-        set_text(self.type1_words, said if repeats.all else "")
-
     def _show_buttons(self) -> None:
         repeats = self._repeats
         can = repeats.buttons(chosen=0 <= self.table.current_row() < len(repeats.all))
@@ -168,4 +145,6 @@ class RepeatsTab(QWidget):
 
     def _copy(self) -> None:
         repeats = self._repeats
-        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, self._facts(), self._of_type1()))
+        QGuiApplication.clipboard().setText(
+            words.repeats_tsv(repeats.all, self._facts(), *(part.facts() for part in self.parts))
+        )

@@ -1,0 +1,1 @@
+"""Studies of the way of measuring, and of series of parts."""
