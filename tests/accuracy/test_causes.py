@@ -1,7 +1,13 @@
 """Precision of causes: what counts as a false one, and what as the first one told."""
 
-import pytest
+from dataclasses import replace
 
+import numpy as np
+import pytest
+import trimesh
+
+from core.pipeline.run import run
+from core.simulate.recording import simulate_set
 from tests.accuracy.causes import (
     BENIGN,
     CLAIMS,
@@ -13,6 +19,7 @@ from tests.accuracy.causes import (
     first_table,
 )
 from tests.accuracy.hostile import figures_of
+from tests.accuracy.hostile_cases import base
 
 FINE = {"error": 0.01, "U": 0.08, "verdict": "conforming", "first": ["scan.scale_weak"]}
 
@@ -64,3 +71,24 @@ def test_nothing_is_told_of_a_set_that_is_in_order(kind, tmp_path):
     figures = figures_of(case, tmp_path)
     assert false_causes(kind, figures) == []
     assert abs(figures["error"]) <= figures["U"]
+
+
+def wedge(deg, folder):
+    """The gauge of a block of 50 mm whose upper face lies askew by so much."""
+    folder.mkdir()
+    block = trimesh.creation.box((60.0, 60.0, 50.0))
+    block.vertices[:, 2] += 25.0
+    upper = block.vertices[:, 2] > 1.0
+    block.vertices[upper, 2] += np.tan(np.radians(deg)) * block.vertices[upper, 0]
+    block.export(folder / "wedge.stl")
+    simulate_set(replace(base(0.25), object="stl", stl_path=str(folder / "wedge.stl")), folder / "set")
+    return run(folder / "set", folder / "out").gauge
+
+
+@pytest.mark.accuracy
+def test_an_angle_between_the_faces_is_told_as_that_and_a_part_laid_flat_is_measured_better(tmp_path):
+    askew, flat = wedge(1.5, tmp_path / "askew"), wedge(0.0, tmp_path / "flat")
+    assert [note.code for note in askew.notes if note.code.startswith("form.")] == ["form.askew"]
+    assert not [note.code for note in flat.notes if note.code.startswith("form.")]
+    assert abs(askew.thickness_mm - 50.0) < askew.U_mm and abs(flat.thickness_mm - 50.0) < flat.U_mm
+    assert flat.U_mm < 0.7 * askew.U_mm

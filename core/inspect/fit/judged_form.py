@@ -5,6 +5,9 @@ against what these explain (`core.model.residuals.judge_with_shared`). What is l
 does not do what it should: a face that is bent, a dent, a flank. That is no fault of the measurement and is in U as
 *form*; it is told where it stands out of the scatter of the points, so that nobody takes a bent face for a plane.
 
+Faces that were fitted as parallel and are not stand out most of all by a slant against each other. What each of them is
+off beside that is its form.
+
 Points that the fit has left out as wrong are judged with the rest, as far as a single one can: a dent is full of them.
 
 Patterns are looked for over patches of a face as the camera sees it, or, in a section, along each of its stretches. Of
@@ -50,8 +53,9 @@ TIMES = 1.2
 are so much too large."""
 _BEYOND = 3.0
 """Standard deviations from which on a point counts for less."""
-_BOWL = 0.6
-"""Share of a pattern's variance that a parabola explains if the face is bowed."""
+_MOST = 0.6
+"""Share of a pattern's variance that a parabola explains if the face is bowed, and an angle between faces if they are
+not parallel."""
 _LEAST_PATCHES = {2: 9, 1: 6}
 """Of a face, and of a stretch of a section; with fewer, the six or three numbers of a parabola explain everything."""
 _CARRIED = 0.5
@@ -106,6 +110,12 @@ class Left:
         """Beside a fitted shape, on its faces `part` (N,)."""
         outward = np.asarray(shape.outward(points, part), dtype=np.float64)
         return cls(shape.misfit(points, part), outward, shape.design(points, part))
+
+    def each_slanted(self, points: Array, part: Parts) -> Left:
+        """The same of parallel faces where each but the first may slant against that as well."""
+        away = (points - points.mean(axis=0))[:, :2] / max(float(np.abs(points[:, :2]).max()), 1e-9)
+        slants = [np.where(part[:, None] == one, away, 0.0) for one in np.unique(part)[1:]]
+        return Left(self.misfit, self.outward, np.hstack([self.design, *slants]))
 
     @classmethod
     def of_nominal(cls, points: Array, deviation: Array, normals: Array) -> Left:
@@ -270,19 +280,40 @@ def notes_on_form(
         off = position[:, 1:] / max(float(np.abs(position[:, 1]).max()), 1e-9)
         across = [np.where(part[:, None] == k, np.hstack([off, off**2]), 0.0) for k in range(len(names))]
         left = Left(left.misfit, left.outward, np.hstack([left.design, *across]))
-    found = judge_form(cloud, left, part, places, errors)
+    found, patterns = _patterns_on(cloud, left, part, places, errors)
+    askew = _note_on_angle(patterns, names) if position is None and len(names) > 1 else ()
+    if askew:
+        found, patterns = _patterns_on(cloud, left.each_slanted(cloud.points, part), part, places, errors)
     if found is None:
-        return ()
-    patterns = [
-        pattern_on(found, places, number, cloud.select(np.flatnonzero(part == number))) for number in range(len(names))
-    ]
+        return askew
     least = _CARRIED * max((float(np.ptp(one.height)) for one in patterns if one is not None), default=0.0)
     notes = [
         _of_pattern(pattern, places, number, names[number])
         for number, pattern in enumerate(patterns)
         if pattern is not None and np.ptp(pattern.height) >= least
     ]
-    return tuple(notes) or of_scatter(found, names)
+    return (*askew, *notes) or of_scatter(found, names)
+
+
+def _patterns_on(
+    cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors
+) -> tuple[Judgement | None, list[Pattern | None]]:
+    """What is `left` of all points, judged, and the pattern over each face; none where it cannot be judged."""
+    found = judge_form(cloud, left, part, places, errors)
+    if found is None:
+        return None, []
+    faces = range(int(part.max()) + 1)
+    return found, [pattern_on(found, places, one, cloud.select(np.flatnonzero(part == one))) for one in faces]
+
+
+def _note_on_angle(patterns: Sequence[Pattern | None], names: Sequence[Message]) -> tuple[Message, ...]:
+    """A note if faces that were fitted as parallel are off most of all because they are not."""
+    seen = [one for one in patterns if one is not None]
+    total = sum(float(one.count @ one.height**2) for one in seen)
+    left = sum(float(one.count @ one.beside_plane() ** 2) for one in seen)
+    if not seen or 1 - left / total <= _MOST:
+        return ()
+    return (note_of("form.askew", name=list(names), percent=100 * (1 - left / total)),)
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
@@ -317,6 +348,12 @@ class Pattern:
     height: Array
     count: NDArray[np.intp]
     at: Array
+
+    def beside_plane(self) -> Array:
+        """What of its height (n,) no slant of the whole face explains."""
+        slant, root = np.column_stack([np.ones(len(self.at)), self.at]), np.sqrt(self.count)
+        solved = np.linalg.lstsq(slant * root[:, None], self.height * root, rcond=None)[0]
+        return np.asarray(self.height - slant @ solved)
 
 
 def pattern_on(found: Judgement, places: Places, number: int, face: Cloud) -> Pattern | None:
@@ -358,7 +395,7 @@ def _of_pattern(pattern: Pattern, places: Places, number: int, name: Message) ->
     bowl = form @ solved
     explained = 1 - float(count @ (height - bowl) ** 2) / float(count @ height**2)
     middle = float(solved[0] - np.average(bowl, weights=count))
-    if explained > _BOWL and abs(middle) > np.ptp(bowl) / 4:
+    if explained > _MOST and abs(middle) > np.ptp(bowl) / 4:
         where, to_edges = ABOVE if middle > 0 else BELOW, places.sides[0] / (places.sides[0] - 1)
         return note_of(
             "form.bowed", name=name, mm=float(np.ptp(_parabola(to_edges * pattern.at) @ solved)), where=where

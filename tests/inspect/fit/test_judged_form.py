@@ -90,6 +90,29 @@ def test_the_gauge_tells_which_of_its_faces_is_bowed() -> None:
     assert "the upper face" in told[0]
 
 
+def askew(deg: float) -> np.ndarray:
+    """Of the block's upper face: slanting along one of its sides, level in its middle."""
+    along = (BLOCK.points - (TABLE_MM - BLOCK.height) * NORMAL) @ axes()[0]
+    return np.where(BLOCK.upper, np.tan(np.radians(deg)) * along, 0.0)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("deg", [0.5, 1.5])
+def test_plane_faces_that_are_not_parallel_are_told_as_that_and_not_as_uneven(deg: float, seed: int) -> None:
+    result = measure_gauge(lifted(block(seed), askew(deg)), errors=BLOCK_ERRORS)
+    (told,) = [note for note in result.notes if note.code.startswith("form.")]
+    assert told.code == "form.askew" and told.values["percent"] > 80
+    assert result.parallelism == pytest.approx(np.radians(deg), abs=np.radians(0.1))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_what_an_angle_leaves_is_told_beside_it(seed: int) -> None:
+    result = measure_gauge(lifted(block(seed), askew(1.0) + bow(0.25)), errors=BLOCK_ERRORS)
+    first, second = [note for note in result.notes if note.code.startswith("form.")]
+    assert first.code == "form.askew"
+    assert second.code == "form.bowed" and "the upper face" in str(second)
+
+
 @pytest.mark.parametrize(("depth_mm", "word"), [(0.3, "too low"), (-0.3, "too high")])
 def test_a_dent_in_a_ball_is_told_with_its_place_and_depth(depth_mm: float, word: str) -> None:
     cloud = SHAPES.measure(np.random.default_rng(3))
