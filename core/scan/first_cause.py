@@ -5,6 +5,12 @@ what is too large in the squares of the crossings, spends as many numbers as it 
 cannot be put in that measure, and a fact decides of each by the rank or count that fails: frames that are too few,
 points that are too unsure, stripes that are saturated, pictures that are compressed. Of them `share` is None.
 
+What is made good before the sweeps are located leaves no crossing off, so there is nothing of it to compare: a picture
+that is another one again counts once (`core.image.repeated`), light that changed with the exposure is taken off
+(`core.scan.features.fan_light`), saturated pixels have no weight. A sheet that meets its surface obliquely displaces no
+crossing either, it makes sections wider, and σ with them; where widths are compared it is part of their model
+(`core.scan.footprint`). Faces that lie askew are compared with their other form (`core.inspect.fit.judged_form`).
+
 A measured cause that explains most of what is too large is said before all others. The others come in the order of
 `Suspect`: each is a fact that leaves a result unsure, whatever else there is, and no other explains most.
 """

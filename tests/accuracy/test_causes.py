@@ -1,12 +1,15 @@
 """Precision of causes: what counts as a false one, and what as the first one told."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import trimesh
 
+from core.files.results.scan_file import read_scan
 from core.pipeline.run import run
+from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import simulate_set
 from tests.accuracy.causes import (
     BENIGN,
@@ -18,7 +21,7 @@ from tests.accuracy.causes import (
     first_cause,
     first_table,
 )
-from tests.accuracy.hostile import figures_of
+from tests.accuracy.hostile import figures_of, told_codes
 from tests.accuracy.hostile_cases import base
 
 FINE = {"error": 0.01, "U": 0.08, "verdict": "conforming", "first": ["scan.scale_weak"]}
@@ -71,6 +74,28 @@ def test_nothing_is_told_of_a_set_that_is_in_order(kind, tmp_path):
     figures = figures_of(case, tmp_path)
     assert false_causes(kind, figures) == []
     assert abs(figures["error"]) <= figures["U"]
+
+
+@pytest.mark.accuracy
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [
+        ("oblique sheets", BENIGN["oblique sheets"]),
+        ("tilted table", BENIGN["table tilted away"]),
+        ("automatic exposure", {"sensor": SensorEffects(automatic_exposure=0.3)}),
+        ("pictures twice", {}),
+    ],
+)
+def test_what_no_crossing_is_off_by_needs_no_comparison(kind, fields, tmp_path):
+    """These are not among the causes that are compared (`core.scan.first_cause`): they leave nothing too large."""
+    recording, out = tmp_path / "set", tmp_path / "out"
+    simulate_set(replace(base(0.25), seed=301, **fields), recording)
+    if kind == "pictures twice":
+        for frame in sorted((recording / "scan").glob("frame*.png")):
+            shutil.copy(frame, frame.with_name(f"{frame.stem}a.png"))
+    run(recording, out)
+    assert not read_scan(out / "scan.npz").causes
+    assert not [code for code in told_codes(out) if code.startswith(("cause.", "scan.moved", "scan.crossings_"))]
 
 
 def wedge(deg, folder):

@@ -45,6 +45,7 @@ WIDENED = {
     "part.material_assumed": Cause.LIGHT_FROM_BELOW_ASSUMED,
     "part.temperature_assumed": Cause.PART_TEMPERATURE_ASSUMED,
     "form.scatter": Cause.FORM,
+    "form.askew": Cause.FORM,
     "form.bowed": Cause.FORM,
     "form.uneven": Cause.FORM,
     "form.uneven_along": Cause.FORM,
