@@ -18,8 +18,13 @@ from pathlib import Path
 import pytest
 
 import workbench
+from tests.code import nodes, syntax_tree
+
+pytestmark = pytest.mark.usefixtures("syntax_trees")
 
 ROOT = Path(workbench.__file__).parent
+ROOMS = {path.relative_to(ROOT).as_posix(): path for path in sorted(ROOT.rglob("*.py"))}
+"""Every module of the workbench by its place in it."""
 
 ADOPTED = {("form.py", "editor")}
 """Given by the caller, and made the object's own child in the same function."""
@@ -83,7 +88,7 @@ def owner(cls: ast.ClassDef | None, function: ast.FunctionDef, sender: str) -> b
 
 def connections(path: Path) -> Iterator[tuple[int, str]]:
     """Line and sender of each lambda or partial that is connected to something another object made."""
-    for cls, function in functions(ast.parse(path.read_text(encoding="utf-8"))):
+    for cls, function in functions(syntax_tree(path)):
         for node in ast.walk(function):
             if not (
                 isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "connect"
@@ -100,9 +105,8 @@ def connections(path: Path) -> Iterator[tuple[int, str]]:
                 yield node.lineno, sender
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_lambdas_are_connected_only_to_what_goes_with_their_object(path: Path) -> None:
-    assert list(connections(path)) == []
+def test_lambdas_are_connected_only_to_what_goes_with_their_object() -> None:
+    assert [(room, *found) for room, path in ROOMS.items() for found in connections(path)] == []
 
 
 def test_the_rule_sees_a_sender_that_outlives_its_receiver(tmp_path: Path) -> None:
@@ -163,16 +167,15 @@ def hazards(tree: ast.AST) -> set[str]:
     return qt | (found & {*THREADS, "gc.disable", "gc.set_threshold"})
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_threads_and_garbage_are_touched_only_where_it_is_explained(path: Path) -> None:
-    explained = EXPLAINED.get(path.relative_to(ROOT).as_posix())
-    assert hazards(ast.parse(path.read_text(encoding="utf-8"))) == ({explained[0]} if explained else set())
+def test_threads_and_garbage_are_touched_only_where_it_is_explained() -> None:
+    touched = {room: found for room, path in ROOMS.items() if (found := hazards(syntax_tree(path)))}
+    assert touched == {room: {what} for room, (what, _) in EXPLAINED.items()}
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_lists_are_models_not_items_that_are_made_anew(path: Path) -> None:
-    used = {node.id for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Name)}
-    assert not used & {"QListWidget", "QTreeWidget", "QTableWidget"}
+def test_lists_are_models_not_items_that_are_made_anew() -> None:
+    made_of_items = {"QListWidget", "QTreeWidget", "QTableWidget"}
+    named = ((room, node) for room, path in ROOMS.items() for node in nodes(path) if isinstance(node, ast.Name))
+    assert [(room, node.lineno) for room, node in named if node.id in made_of_items] == []
 
 
 def loops_at_close(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -191,9 +194,8 @@ def loops_at_close(tree: ast.AST) -> Iterator[tuple[int, str]]:
                     wanted.append(called)
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_no_event_loop_runs_while_a_window_closes(path: Path) -> None:
-    assert list(loops_at_close(ast.parse(path.read_text(encoding="utf-8")))) == []
+def test_no_event_loop_runs_while_a_window_closes() -> None:
+    assert [(room, *found) for room, path in ROOMS.items() for found in loops_at_close(syntax_tree(path))] == []
 
 
 def test_threads_and_loops_at_close_are_seen() -> None:

@@ -18,8 +18,9 @@ STEPS = ("project", "camera", "planes", "scan", "inspect", "report")
 NUMBERS = ("scipy", "cv2", "numba", "numpy.linalg", "numpy.random")
 
 
-def modules() -> list[Path]:
-    return sorted(ROOT.rglob("*.py"))
+def rooms() -> dict[str, Path]:
+    """Every module of the workbench by its place in it."""
+    return {path.relative_to(ROOT).as_posix(): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -36,19 +37,22 @@ def imported(path: Path) -> Iterator[str]:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_a_module_touches_only_what_its_room_may(path: Path) -> None:
-    names, room = set(imported(path)), path.relative_to(ROOT).as_posix()
-    if not room.startswith("views/scene/"):
-        assert not [n for n in names if n.split(".")[0] in ("pyvista", "pyvistaqt", "vtk", "vtkmodules")]
-    if path.stem in ("presenter", "bench", "project_model", "tasks", "step_state"):
-        assert not [n for n in names if n.startswith(("PySide6.QtWidgets", "workbench.views"))], "no widgets here"
-    if not room.startswith("views/scene/"):  # what the mouse meant is decided in screen pixels there
-        assert not [n for n in names if n.startswith(NUMBERS)], "numbers are made in core"
-    if room.startswith("pages/"):
-        mine = next((step for step in STEPS if room.startswith(f"pages/{step}/")), None)
-        others = tuple(f"workbench.pages.{step}." for step in STEPS if step != mine)
-        assert mine is None or not [n for n in names if n.startswith(others)], "pages never import each other"
+def test_a_module_touches_only_what_its_room_may() -> None:
+    offences: list[tuple[str, str, str]] = []
+    for room, path in rooms().items():
+        names = set(imported(path))
+
+        def none(of: tuple[str, ...], why: str, room: str = room, names: set[str] = names) -> None:
+            offences.extend((room, name, why) for name in sorted(names) if name.startswith(of))
+
+        if not room.startswith("views/scene/"):
+            none(("pyvista", "pyvistaqt", "vtk"), "3D is of views/scene")
+            none(NUMBERS, "numbers are made in core")  # what the mouse meant is decided in screen pixels in views/scene
+        if path.stem in ("presenter", "bench", "project_model", "tasks", "step_state"):
+            none(("PySide6.QtWidgets", "workbench.views"), "no widgets here")
+        if mine := next((step for step in STEPS if room.startswith(f"pages/{step}/")), None):
+            none(tuple(f"workbench.pages.{step}." for step in STEPS if step != mine), "pages never import each other")
+    assert offences == []
 
 
 ENABLES = ("views/layouts.py", "views/forms/form.py")
@@ -61,13 +65,15 @@ def targets(function: ast.FunctionDef, method: str) -> set[str]:
     return {ast.unparse(one.value) for one in calls if isinstance(one, ast.Attribute) and one.attr == method}
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_a_button_is_greyed_together_with_its_reason(path: Path) -> None:
-    room = path.relative_to(ROOT).as_posix()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef) and room not in ENABLES and not room.startswith("pages/project/"):
-            by_hand = targets(node, "setEnabled") & targets(node, "setToolTip")
-            assert not by_hand, f"{node.name}: use enable() of views/layouts.py"
+def test_a_button_is_greyed_together_with_its_reason() -> None:
+    """Else: use enable() of views/layouts.py."""
+    by_hand = [
+        (room, node.name)
+        for room, path in rooms().items() if room not in ENABLES and not room.startswith("pages/project/")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and targets(node, "setEnabled") & targets(node, "setToolTip")
+    ]  # fmt: skip
+    assert by_hand == []
 
 
 def every_job() -> Iterator[Job]:
