@@ -1,6 +1,7 @@
 """Modules are handed out by what they took: the longest first."""
 
 from tests import durations
+from tests.code import ROOT
 
 
 def test_what_has_run_replaces_what_is_known_of_it_and_what_is_short_or_gone_has_no_line(tmp_path):
@@ -13,3 +14,8 @@ def test_what_has_run_replaces_what_is_known_of_it_and_what_is_short_or_gone_has
     assert file.read_text() == "30 tests/test_a.py\n4 tests/test_b.py\n"
     durations.write({"tests/test_b.py": 1.0, "tests/test_c.py": 50.0}, file)
     assert list(durations.read(file)) == ["tests/test_c.py", "tests/test_a.py"]
+
+
+def test_every_module_that_has_a_line_is_there():
+    """One that was moved would be taken for a short one, and handed out last."""
+    assert [name for name in durations.read() if not (ROOT / name).is_file()] == []
