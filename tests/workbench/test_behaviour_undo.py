@@ -125,7 +125,6 @@ def test_an_edit_is_undone_and_redone_from_the_menu_and_results_follow(
     t.activate()
     for edit, outdated in edits.items():
         undo_and_redo(t, edit, outdated)
-    t.idle()
 
 
 def undo_and_redo(t: Technician, edit: Edit, outdated: tuple[str, ...]) -> None:
