@@ -48,12 +48,6 @@ def test_with_it_its_entries_stand_where_it_says(window: MainWindow) -> None:
     assert names.index("plan rig") == names.index("console") + 1
 
 
-def test_with_it_its_tab_and_what_is_below_the_repeats_are_there(window: MainWindow) -> None:
-    page: Any = window.pages["inspect"]
-    assert [page.tabs.tabText(place) for place in range(page.tabs.count())][-1] == "Studies" == next(iter(page.brought))
-    assert len(page.series.parts) == 1
-
-
 def test_a_name_of_no_wing_is_told_in_the_window(
     monkeypatch: pytest.MonkeyPatch, hand_bench: Bench, qtbot: QtBot
 ) -> None:

@@ -50,3 +50,9 @@ def test_the_repeats_are_studied_beside_their_chart(presenter, show_page, qtbot)
     assert part.rows.text_of("Tolerance T") == "0.4 mm"
     assert "4 repeats say little" in part.words.text()
     assert len(page.series.histogram._values) == 4
+
+
+def test_the_tab_of_the_wing_is_the_last_and_its_study_stands_below_the_repeats(presenter, show_page):
+    page = show_page(presenter)
+    assert page.tabs.tabText(page.tabs.count() - 1) == "Studies" == next(iter(page.brought))
+    assert [type(part).__name__ for part in page.series.parts] == ["Type1Part"]
