@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import cho_factor
-from scipy.linalg.lapack import dpotri
+from scipy.linalg import cholesky
+from scipy.linalg.lapack import dpotri, dtrtri
 
 from core.model.arrays import Array
 
 
-def inverse_of(matrix: Array) -> Array:
-    """Invert a positive definite `matrix` (N, N).
+def inverse_root(matrix: Array) -> Array:
+    """Find the lower triangle R (N, N) with Rᵀ R = M⁻¹ of a positive definite `matrix` M (N, N): M⁻¹ costs twice that.
 
     Raises
     ------
     numpy.linalg.LinAlgError
         If it is not positive definite.
     """
-    return inverse_by(cho_factor(matrix, lower=True, check_finite=False)[0])
+    return np.asarray(dtrtri(cholesky(matrix, lower=True, check_finite=False), lower=1, overwrite_c=1)[0])
 
 
 def inverse_by(lower: Array) -> Array:
-    """Invert a matrix (N, N) by its `lower` (N, N) Cholesky factor; values above the diagonal are ignored."""
+    """Invert M (N, N) by its `lower` (N, N) Cholesky factor; values above the diagonal are ignored."""
     inverse = np.tril(dpotri(lower, lower=1)[0])
     return np.asarray(inverse + np.tril(inverse, -1).T)

@@ -32,7 +32,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
-from core.model.positive_definite import inverse_of
+from core.model.positive_definite import inverse_root
 
 SILENT_SD = 6.0
 """Limit of Tukey's biweight: a stretch this many of its own standard deviations off has no weight left, but 1e-6.
@@ -94,19 +94,22 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
     for _ in range(ROUNDS):
         own = sources.own * np.sqrt(factor[group])
         weight, scale[forms] = weights / own**2, form
-        of_group = [scale[:, None] * part * scale for part in sources.information_of_each(others, weight)]
-        inverse = inverse_of(of_group[0] + of_group[1] + np.diag(prior))
-        solution = inverse @ (scale * (effects.T @ (weight * misfit)))
+        of_swept, fan_rows = sources.information_of_each(others, weight)
+        information = scale[:, None] * (of_swept + fan_rows.T @ fan_rows) * scale
+        information[np.diag_indices(len(prior))] += prior
+        root = inverse_root(information)
+        solution = root.T @ (root @ (scale * (effects.T @ (weight * misfit))))
         residuals = (misfit - effects @ (scale * solution)) / own
-        form_before, form = form, _form(form, solution[forms], inverse.diagonal()[forms])
-        for number in range(2):
+        variances = (root**2).sum(axis=0)
+        form_before, form = form, _form(form, solution[forms], variances[forms])
+        of_fan = float(np.sum((root @ (fan_rows * scale).T) ** 2))  # trace of (Aᵀ W A of the fan) · inverse
+        for number, spent in enumerate((len(prior) - float(prior @ variances) - of_fan, of_fan)):
             mine = group == number
-            spent = float(np.sum(inverse * of_group[number]))
             factor[number] = max(1.0, factor[number] * _variance_factor(weights[mine], residuals[mine], spent))
         weights = np.clip(1 - (residuals / SILENT_SD) ** 2, 1e-3, None) ** 2
         if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
             break
-    gains = weight * ((inverse[:fixed] * scale) @ effects.T)
+    gains = weight * (((root.T @ root[:, :fixed]).T * scale) @ effects.T)
     assumed = sources.common[:, sources.assumed & ~sources.unexplained]
     if not assumed.shape[1]:
         return Generalised(solution[:fixed], gains, own, form_before, residuals)

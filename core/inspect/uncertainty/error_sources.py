@@ -158,11 +158,11 @@ class Sources:
 
     def information(self, others: Array, weight: Array) -> Array:
         """Aᵀ W A (n, n) of the `effects` A; `weight` (J,) is the diagonal of W."""
-        of_swept, of_fan = self.information_of_each(others, weight)
-        return of_swept + of_fan
+        of_swept, fan_rows = self.information_of_each(others, weight)
+        return of_swept + fan_rows.T @ fan_rows
 
     def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
-        """What stretches of sweeps, and those of the fan, add to `information`.
+        """What stretches of sweeps add to `information` (n, n), and rows R (…, n) of which those of the fan add Rᵀ R.
 
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
@@ -172,7 +172,7 @@ class Sources:
         across = (self.on_planes[swept].T @ weighted).T @ self.planes
         of_swept = np.block([[weighted.T @ others[swept], across], [across.T, planes.T @ planes]])
         rows = np.hstack([others[fan], self.speckle[fan], self.sweeps[fan]]) * np.sqrt(weight[fan])[:, None]
-        return of_swept, rows.T @ rows
+        return of_swept, rows
 
     def mean(self, values: Array) -> Array:
         """Weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""

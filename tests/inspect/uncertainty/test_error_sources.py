@@ -74,10 +74,10 @@ def test_the_information_of_all_stretches_is_that_of_few_rows_a_sweep(size):
     columns = np.hstack([others, speckle, shared])
     expected = (columns * weight[:, None]).T @ columns
     np.testing.assert_allclose(sources.information(others, weight), expected, atol=1e-6 * np.abs(expected).max())
-    of_swept, of_fan = sources.information_of_each(others, weight)
+    of_swept, fan_rows = sources.information_of_each(others, weight)
     of_sweeps = (columns * (weight * (sweep >= 0))[:, None]).T @ columns
     np.testing.assert_allclose(of_swept, of_sweeps, atol=1e-6 * np.abs(expected).max())
-    np.testing.assert_allclose(of_fan, expected - of_sweeps, atol=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(fan_rows.T @ fan_rows, expected - of_sweeps, atol=1e-6 * np.abs(expected).max())
 
 
 def test_where_no_planes_are_known_the_others_and_the_speckle_are_left():
