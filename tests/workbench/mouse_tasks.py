@@ -32,6 +32,7 @@ from PySide6.QtWidgets import (
     QApplication,
     QComboBox,
     QDialogButtonBox,
+    QLabel,
     QLineEdit,
     QMenu,
     QScrollArea,
@@ -405,6 +406,33 @@ def wrong_count(m: Mouse) -> None:
     assert m.window.rail.state_of("camera") == "done", "it is the calibration that was accepted before"
 
 
+def why_large(m: Mouse) -> None:
+    """U is large: the page says why and what helps; the material was not stated, and is now."""
+    m.step("inspect")
+    page, presenter = cast(Any, m.window.pages["inspect"]), cast(Any, m.window.presenters["inspect"])
+    scan = presenter.scan
+
+    def measure() -> float:
+        m.click(page.card.buttons["measure"])
+        m.until(lambda: scan.gauge is not None and not scan.is_thickness_old, "the thickness")
+        m.idle()
+        return float(scan.gauge.U_mm)
+
+    m.idle()
+    presenter.part.set_value("material", "")  # the mistake, and what was measured with it, no part of the task
+    before = measure()
+    m.step("project")
+    m.effort = Effort()
+    m.step("inspect")
+    told = "State the material, under The part."
+    m.until(lambda: any(one.isVisible() and told in one.text() for one in m.window.findChildren(QLabel)), told)
+    m.click(page.part_fold.toggleButton())
+    m.until(page.part.isVisible, "the fold to open")
+    m.choose(next(box for box in page.part.findChildren(QComboBox) if box.findText("Metal") >= 0), "Metal")
+    after = measure()
+    assert after < before / 2, f"U was {before:.4f} mm and is {after:.4f} mm"
+
+
 TASKS: tuple[tuple[str, bool, Callable[[Mouse], None]], ...] = (
     ("First measurement", False, first_measurement),
     ("Next part with plan, limits and report of the last", True, next_part),
@@ -415,6 +443,7 @@ TASKS: tuple[tuple[str, bool, Callable[[Mouse], None]], ...] = (
     ("Own recorded set to the report", False, own_recording),
     ("Thickness by two clicks, with limits, to the PDF", True, limits_to_pdf),
     ("Board counted wrongly, to a camera", True, wrong_count),
+    ("Why U is large, and mended", True, why_large),
 )
 """Title, whether the finished sample is open when it begins, and what is done."""
 

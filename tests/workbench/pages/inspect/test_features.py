@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QIcon
-from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit, QStyleOptionViewItem
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QLineEdit, QStyleOptionViewItem
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
@@ -34,6 +34,7 @@ from workbench.pages.inspect.stage import Stage
 from workbench.views import ask
 from workbench.views.colours import DEVIATIONS, to_rgba
 from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesIcon
+from workbench.views.lists.tree_model import Cell, TreeRow
 from workbench.views.scene.colours import table
 from workbench.views.scene.contents import Labels, Marks, Patches
 from workbench.work import jobs
@@ -383,6 +384,18 @@ def test_the_chosen_feature_stays_in_sight_as_the_list_becomes_lower(page, featu
     page.refresh()
     page.features.fit(600)
     qtbot.waitUntil(lambda: rows.viewport().rect().contains(rows.visualRect(rows.currentIndex()).center()))
+
+
+def test_the_values_of_the_chosen_feature_are_in_sight(page):
+    rows, below = page.features.list, [TreeRow("", (Cell(value), Cell("0.1 mm"))) for value in ("profile", "mean")]
+    page.show()
+    rows.set_rows([TreeRow(f"{number}", (Cell(f"{number}"), Cell("")), tuple(below)) for number in range(4)])
+    rows.setFixedHeight(rows.header().height() + 5 * rows.rowHeight(rows.model().index(0, 0)))
+    QApplication.processEvents()
+    rows.choose("1")
+    chosen, in_view = rows.currentIndex(), rows.viewport().rect()
+    for index in (chosen, *(rows.model().index(row, 0, chosen) for row in range(2))):
+        assert index.isValid() and in_view.contains(rows.visualRect(index).center())
 
 
 def test_with_no_feature_chosen_none_looks_chosen(page, features, presenter):

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint, Qt, QTimer, Signal
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -409,11 +409,21 @@ def _verdict_icon(verdict: str) -> QIcon | None:
 
 
 class _List(TreeList):
-    """Keeps the chosen row in sight, however high it is made."""
+    """Keeps the chosen row in sight, however high it is made, and those below it as far as there is room."""
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self.scrollTo(self.currentIndex())  # an index of nothing moves nothing
+
+    def scrollTo(
+        self,
+        index: QModelIndex | QPersistentModelIndex,
+        hint: QAbstractItemView.ScrollHint = QAbstractItemView.ScrollHint.EnsureVisible,
+    ) -> None:
+        model = self.model()
+        if below := model.rowCount(index) if index.isValid() else 0:
+            super().scrollTo(model.index(below - 1, 0, index), hint)
+        super().scrollTo(index, hint)
 
 
 class TemplatesButton(QPushButton):
