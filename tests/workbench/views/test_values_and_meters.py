@@ -1,6 +1,7 @@
 import pytest
+from PySide6.QtWidgets import QApplication
 
-from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRows, Verdict
+from workbench.views.lists.value_rows import LEVEL_ICONS, NAME_PX, VALUE_PX, ValueRows, Verdict
 from workbench.views.plots.meters import HintBar, Meter
 
 
@@ -113,3 +114,20 @@ def test_a_hidden_hint_bar_keeps_no_clock_running(qtbot):
     bar.set_hints(["b"])
     bar.hide()
     assert not bar._steady._clock.isActive()
+
+
+def test_a_long_value_takes_several_lines_where_there_is_no_room_for_one(qtbot):
+    rows, long = ValueRows(), "3.0 % of the places, mean −0.018 mm, at most −0.046 mm"
+    qtbot.addWidget(rows)
+    rows.set_rows([("Less material", long, "", "warn"), ("Detectable from", "0.020 mm", "", "")])
+    rows.show()
+    assert rows.minimumSizeHint().width() < NAME_PX + VALUE_PX + 50
+    value = rows._labels[0][1]
+    lines = []
+    for width in (rows.minimumSizeHint().width(), 700):
+        rows.resize(width, 200)
+        QApplication.processEvents()
+        assert value.height() >= value.heightForWidth(value.width()), "nothing is cut off"
+        lines.append(value.heightForWidth(value.width()) // value.fontMetrics().height())
+    assert lines[0] > lines[1] == 1
+    assert rows.text_of("Less material") == long

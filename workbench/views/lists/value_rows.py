@@ -34,6 +34,8 @@ VERDICT_ICONS: dict[str, tuple[str, str]] = {
 
 NAME_PX = 96
 """Least width of the labels: beside a long value a short one stays in one line."""
+VALUE_PX = 210
+"""A value that is wider goes on in a further line: beside a label it would make the column at the side wider."""
 
 ValueRow = tuple[str, str, str, Level]
 """Label, text with unit, tip, level."""
@@ -42,7 +44,8 @@ ValueRow = tuple[str, str, str, Level]
 class ValueRows(QWidget):
     """Rows with label at the left, value with unit at the right, and an icon where a value is good or not.
 
-    It is at least `least_width` pixels wide, and never narrower than its values. Further rows are folded.
+    It is at least `least_width` pixels wide, and never narrower than its values, of which long ones take several lines.
+    Further rows are folded.
     """
 
     def __init__(self, parent: QWidget | None = None, *, least_width: int = 0) -> None:
@@ -97,7 +100,7 @@ class ValueRows(QWidget):
             self._show()
 
     def _add_row(self) -> None:
-        name, value, sign = QLabel(), QLabel(), IconLabel(15)
+        name, value, sign = QLabel(), _Value(), IconLabel(15)
         name.setObjectName("muted")
         name.setWordWrap(True)
         value.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -110,6 +113,7 @@ class ValueRows(QWidget):
     def _show(self) -> None:
         words = grade_words()
         for (label, text, tip, level), (name, value, sign) in zip(self._rows, self._labels, strict=False):
+            value.setWordWrap(value.fontMetrics().horizontalAdvance(text) > VALUE_PX)
             for shown, wanted in ((name, label), (value, text)):
                 if shown.text() != wanted:
                     shown.setText(wanted)
@@ -125,6 +129,18 @@ class ValueRows(QWidget):
             else:
                 sign.show_icon("")
                 dress(value, "")
+
+
+class _Value(QLabel):
+    """One line where there is room for it, even where it may wrap."""
+
+    def sizeHint(self) -> QSize:
+        hint = super().sizeHint()
+        return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 2, hint.height()) if self.wordWrap() else hint
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        return QSize(VALUE_PX, hint.height()) if self.wordWrap() else hint
 
 
 class Verdict(QFrame):
