@@ -25,7 +25,7 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Element:
-    """A plane, an axis or a point, with how it follows the parameters of the surface fitted.
+    """Plane, axis or point, with the derivatives of its place and direction by the parameters of the surface fitted.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Element:
 
     @classmethod
     def of_plane(cls, fit: SurfaceFit[ParallelPlanes], kind: Literal["plane", "point"] = "plane") -> Element:
-        """The plane of one face, or the point amid it; along the face its place is taken as known."""
+        """Make the element of one face's plane, or of the point amid it; along the face its place is taken as known."""
         levels = fit.shape
         gradient = levels.normal_gradient
         along = np.zeros_like(gradient)
@@ -58,20 +58,20 @@ class Element:
 
     @classmethod
     def of_sphere(cls, fit: SurfaceFit[Sphere]) -> Element:
-        """A sphere's centre."""
+        """Make the element of a sphere's centre."""
         gradient = np.hstack([np.eye(3), np.zeros((3, 1))])
         away = fit.shape.centre / np.linalg.norm(fit.shape.centre)
         return cls("point", fit.shape.centre, -away, gradient, np.zeros((3, 4)), fit.effects)
 
     @classmethod
     def of_cylinder(cls, fit: SurfaceFit[Cylinder]) -> Element:
-        """A cylinder's axis."""
+        """Make the element of a cylinder's axis."""
         tube = fit.shape
         return cls("axis", tube.centre, tube.direction, tube.centre_gradient, tube.direction_gradient, fit.effects)
 
 
 class Derived(NamedTuple):
-    """A quantity of two elements: `value` in mm or rad, what its uncertainty is made of, and what exactly it is."""
+    """Quantity of two elements: `value` in mm or rad, the budget of its uncertainty, and the rule it is measured by."""
 
     value: float
     budget: tuple[Contribution, ...]
@@ -79,7 +79,7 @@ class Derived(NamedTuple):
 
 
 def distance(a: Element, b: Element) -> Derived:
-    """Distance in mm of the place of `a` from `b`.
+    """Compute the distance in mm of the place of `a` from `b`, with its budget.
 
     From a plane square to it, from an axis square to it, from a point straight. Of two of which one is a plane (else an
     axis), the distance is that of the other's place from it; of two planes, of the first one's middle from the second.
@@ -111,7 +111,7 @@ def distance(a: Element, b: Element) -> Derived:
 
 
 def angle(a: Element, b: Element) -> Derived:
-    """Angle in rad, 0 to π/2, of two planes, two axes, or an axis and a plane."""
+    """Compute the angle in rad, 0 to π/2, between two planes, two axes, or an axis and a plane, with its budget."""
     first, second = a.direction, b.direction
     second = second if first @ second >= 0 else -second
     flip = 1.0 if second is b.direction else -1.0

@@ -52,7 +52,7 @@ COVERED = 0.95
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FormZone:
-    """The width in mm of the zone that holds a surface's form, its uncertainty, and the length in mm of the field.
+    """Zone that holds a surface's form: its width in mm, its uncertainty, and the length in mm of the field.
 
     U = 2 u reaches to the farther end of the interval of 95 %.
     """
@@ -63,14 +63,14 @@ class FormZone:
 
     @property
     def u(self) -> float:
-        """Standard uncertainty in mm."""
+        """Standard uncertainty of the width, in mm."""
         return combined(self.budget)
 
 
 def form_zone(
     residuals: Array, points: Array, outward: Array, sources: Sources, fit: Generalised, design: Array, cell_mm: float
 ) -> FormZone:
-    """The zone of the residuals of a fit.
+    """Estimate the zone that holds the form of a surface from the residuals of its fit.
 
     Parameters
     ----------

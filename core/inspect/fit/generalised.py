@@ -56,7 +56,7 @@ SMALLEST_FORM_MM, LARGEST_FORM_MM = 1e-4, 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Generalised:
-    """The solution.
+    """Solution of a generalised least-squares fit: the estimate of β and the standard deviations found with it.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Generalised:
 
 
 def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Array | None = None) -> Generalised:
-    """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`.
+    """Fit β to `misfit` (J,) in mm = `design` (J, p) · β by robust generalised least squares with errors of `sources`.
 
     The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
     """

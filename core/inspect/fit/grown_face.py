@@ -56,7 +56,7 @@ FLATTEST = 1e-4
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GrownFace:
-    """A face and the points on it.
+    """Face grown from a point: its shape and the points on it.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class GrownFace:
 
 
 def grow_face(cloud: Cloud, seed: int, kind: FaceKind | None = None) -> GrownFace:
-    """The face that the point with the index `seed` lies on.
+    """Grow the face that the point with the index `seed` lies on.
 
     Parameters
     ----------

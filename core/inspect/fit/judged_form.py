@@ -83,13 +83,13 @@ ABOVE, BELOW = Message("form.above", "above"), Message("form.below", "below")
 
 
 def level(number: int) -> Message:
-    """The name of a level, from 1."""
+    """Make the name of a level, from 1."""
     return Message("form.the_level", "level {n}", n=number)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Left:
-    """What is left of N points beside a surface.
+    """Misfits of N points beside a surface, with its normals and how it follows what was fitted.
 
     Parameters
     ----------
@@ -107,19 +107,22 @@ class Left:
 
     @classmethod
     def of(cls, shape: Shape, points: Array, part: Parts) -> Left:
-        """Beside a fitted shape, on its faces `part` (N,)."""
+        """Compute the misfits of `points` (N, 3) in mm beside a fitted shape, on its faces `part` (N,)."""
         outward = np.asarray(shape.outward(points, part), dtype=np.float64)
         return cls(shape.misfit(points, part), outward, shape.design(points, part))
 
     def each_slanted(self, points: Array, part: Parts) -> Left:
-        """The same of parallel faces where each but the first may slant against that as well."""
+        """Add a slant of its own of each face but the first to the design; return the misfits with it."""
         away = (points - points.mean(axis=0))[:, :2] / max(float(np.abs(points[:, :2]).max()), 1e-9)
         slants = [np.where(part[:, None] == one, away, 0.0) for one in np.unique(part)[1:]]
         return Left(self.misfit, self.outward, np.hstack([self.design, *slants]))
 
     @classmethod
     def of_nominal(cls, points: Array, deviation: Array, normals: Array) -> Left:
-        """Beside a nominal surface that may move as a whole, and swell; of motions that leave it where it is, none."""
+        """Make the misfits of deviations (N,) in mm, less their median, from a nominal surface that may move and swell.
+
+        Motions that leave the surface where it is are not in the design.
+        """
         moved = np.hstack([normals, np.cross(points - points.mean(axis=0), normals), np.ones((len(points), 1))])
         moved /= np.maximum(np.linalg.norm(moved, axis=0), 1e-12)
         axes, size, _ = np.linalg.svd(moved, full_matrices=False)
@@ -128,7 +131,7 @@ class Left:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Places:
-    """Where on its face each of N points lies, told apart by C places a face.
+    """Place on its face of each of N points, among C places a face.
 
     Parameters
     ----------
@@ -146,12 +149,12 @@ class Places:
 
     @classmethod
     def in_picture(cls, uv: Array, part: Parts) -> Places:
-        """Patches of faces as the camera sees them."""
+        """Number the patches of the picture, over each face's extent, that points `uv` (N, 2) in px lie in."""
         return cls(patches(uv, part).astype(np.intp), (PATCHES, PATCHES), np.zeros((0, 2)))
 
     @classmethod
     def in_section(cls, position: Array, part: Parts) -> Places:
-        """Parts of the stretches of a section, of points at these positions (N,) in mm."""
+        """Number the parts of a section's stretches that points at `position` (N,) in mm lie in."""
         cell, ends = np.zeros(len(position), dtype=np.intp), []
         for number in range(int(part.max(initial=0)) + 1):
             here = part == number
@@ -161,22 +164,22 @@ class Places:
 
     @property
     def number(self) -> int:
-        """How many places a face has."""
+        """Number of places of a face."""
         return int(np.prod(self.sides))
 
     def of_face(self, number: int) -> slice:
-        """The places of one face among all."""
+        """Return the slice of the places of one face among those of all."""
         return slice(self.number * number, self.number * (number + 1))
 
     def flat(self, place: NDArray[np.intp]) -> Array:
-        """(n, sides) where places of a face are, −1 … 1 from edge to edge of it, across before down."""
+        """Compute where (n, sides) on their face places (n,) are, −1 … 1 from edge to edge, across before down."""
         steps = np.unravel_index(place, self.sides)[::-1]
         return np.column_stack([2 * (step + 0.5) / side - 1 for step, side in zip(steps, self.sides, strict=True)])
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Stretches:
-    """What is left beside a surface of each of J stretches of stripes.
+    """Misfits of J stretches of stripes beside a surface, with what acts on them.
 
     Parameters
     ----------
@@ -198,7 +201,7 @@ class Stretches:
 
     @classmethod
     def of(cls, cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Stretches:
-        """Of what is `left` of all points of a cloud; those far off count for less."""
+        """Average what is `left` of all points of a cloud over stretches; those far off count for less."""
         expected = cloud.sigma * np.maximum(
             np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING
         )
@@ -245,7 +248,7 @@ def notes_on_form(
     part: Parts | None = None,
     position: Array | None = None,
 ) -> tuple[Message, ...]:
-    """What is wrong with a surface, and in which direction: at most one note a face.
+    """Note what is wrong with a surface, and in which direction: at most one note a face.
 
     Parameters
     ----------
@@ -317,7 +320,7 @@ def _note_on_angle(patterns: Sequence[Pattern | None], names: Sequence[Message])
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
-    """Where points off a nominal surface by `deviation` (N,) stand out of their uncertainty, however laid on.
+    """Note where points off a nominal surface by `deviation` (N,) in mm exceed their uncertainty, however laid on.
 
     `normals` (N, 3) are of the nominal surface. At most one note, none on scatter: a map has no margin, and points at
     edges, which no fit has left out, scatter more than they can state. What they scatter makes a pattern less sure.
@@ -350,14 +353,14 @@ class Pattern:
     at: Array
 
     def beside_plane(self) -> Array:
-        """What of its height (n,) no slant of the whole face explains."""
+        """Compute the part (n,) in mm of the heights that no slant of the whole face explains."""
         slant, root = np.column_stack([np.ones(len(self.at)), self.at]), np.sqrt(self.count)
         solved = np.linalg.lstsq(slant * root[:, None], self.height * root, rcond=None)[0]
         return np.asarray(self.height - slant @ solved)
 
 
 def pattern_on(found: Judgement, places: Places, number: int, face: Cloud) -> Pattern | None:
-    """The pattern over one face, if it is surely there and stands out in pixels."""
+    """Compute the pattern over one face; None unless it is surely there and stands out in pixels."""
     count = found.count[places.of_face(number)]
     seen = np.flatnonzero(count)
     if found.p >= SURELY or len(seen) < _LEAST_PATCHES[len(places.sides)]:
@@ -375,7 +378,7 @@ def _pixel_mm(cloud: Cloud) -> float:
 
 
 def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
-    """A note on points that scatter more than stated, if they surely do."""
+    """Note that points scatter more than stated; () unless they surely do."""
     asked = ((found.whole, found.whole_freedom), (found.alone, found.freedom))
     if any(times <= TIMES or _by_chance(times, freedom) >= SURELY for times, freedom in asked):
         return ()

@@ -48,7 +48,7 @@ LARGEST_WEIGHT = 16.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlaneFit:
-    """The plane normal·X = distance; `normal` (3,) is unit and points away from the camera, `distance` in mm.
+    """Plane normal·X = distance; `normal` (3,) is unit and points away from the camera, `distance` in mm.
 
     `weights` (N,) hold 1/σ² times the robust weight, zero for points left out; `residuals` (N,) in mm are positive
     towards the camera; `scale` is their robust scale in units of the stated uncertainty (1 when that is true; in mm
@@ -83,11 +83,11 @@ class ParallelPlaneFit:
 
     @property
     def thickness(self) -> float:
-        """Distance of the two planes in mm."""
+        """Distance between the two planes, in mm."""
         return self.lower_distance - self.upper_distance
 
     def shape(self, points: Array, face: NDArray[np.int64]) -> ParallelPlanes:
-        """The planes as a shape amid `points` (N, 3) of the upper face, 0, and the lower, 1, as `face` (N,) says."""
+        """Make the planes' shape amid `points` (N, 3) of the upper face, 0, and the lower, 1, as `face` (N,) says."""
         centres = []
         for number, distance in enumerate((self.upper_distance, self.lower_distance)):
             middle = points[face == number].mean(axis=0)
@@ -107,7 +107,7 @@ class _Solution:
 
 
 def fit_plane(points: Array, sigma: Array | None = None, *, reference_normal: Array | None = None) -> PlaneFit:
-    """Robust orthogonal fit of one plane.
+    """Fit one plane robustly, by orthogonal distances.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def fit_parallel_planes(
     *,
     reference_normal: Array | None = None,
 ) -> ParallelPlaneFit:
-    """Joint robust fit of two parallel planes: one common normal, two distances.
+    """Fit two parallel planes jointly and robustly: one common normal, two distances.
 
     Parameters
     ----------
@@ -268,7 +268,7 @@ ITERATIONS = 2
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FittedFaces:
-    """The fit and what its uncertainty is made of.
+    """Joint fit of two parallel faces and what its uncertainty is made of.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ LIKE_NORMALS = np.cos(np.radians(30.0))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundPlane:
-    """The plane normal·X = distance (normal away from the camera) and its contiguous region."""
+    """Plane normal·X = distance in mm, its normal away from the camera, and its contiguous region."""
 
     normal: Array
     distance: float
@@ -59,7 +59,7 @@ def find_planes(
     seed: int = 0,
     progress: Progress = silent,
 ) -> list[FoundPlane]:
-    """At most `most` plane faces, those that explain most area first.
+    """Find at most `most` plane faces, those that explain most area first.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def find_planes(
 
 
 def above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -> NDArray[np.int64]:
-    """Indices of the points more than 3 `tolerance` (mm) before the largest plane; of all when there is no plane."""
+    """Select the points more than 3 `tolerance` (mm) before the largest plane, all if there is none; return indices."""
     planes = find_planes(cloud, seed=seed, progress=progress, most=1)
     if not planes:
         return np.arange(len(cloud))
@@ -102,17 +102,17 @@ def above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -
 
 
 def points_on(cloud: Cloud, plane: FoundPlane, tolerance_mm: float) -> NDArray[np.int64]:
-    """Indices of all points of the cloud within `tolerance_mm` of a plane that do not face elsewhere."""
+    """Select all points of the cloud within `tolerance_mm` of a plane that do not face elsewhere; return indices."""
     return np.flatnonzero(_on_plane(cloud, plane.normal, plane.distance, tolerance_mm))
 
 
 def search_tolerance(cloud: Cloud) -> float:
-    """Distance in mm within which a point belongs to a plane in a search: five times the median σ, at least 0.25."""
+    """Compute the distance in mm within which a point belongs to a plane: five times the median σ, at least 0.25."""
     return max(0.25, 5 * float(np.median(cloud.sigma))) if len(cloud) else 0.25
 
 
 def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -> FoundPlane | None:
-    """The plane that explains most area, with its region less `margin_mm`; None when nothing is plane.
+    """Find the plane that explains most area, with its region less `margin_mm`; None when nothing is plane.
 
     Parameters as for `find_planes`; `tolerance` in mm.
     """

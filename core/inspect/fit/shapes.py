@@ -20,26 +20,26 @@ Parts = NDArray[np.int64]
 
 
 class Shape(Protocol):
-    """A surface of p parameters; `part` (N,) tells points of several faces apart."""
+    """Surface of p parameters; `part` (N,) tells points of several faces apart."""
 
     def misfit(self, points: Array, part: Parts) -> Array:
-        """Signed distance (N,) in mm of `points` (N, 3)."""
+        """Compute the signed distance (N,) in mm of `points` (N, 3) from the surface, outwards positive."""
         ...
 
     def outward(self, points: Array, part: Parts) -> Array:
-        """Unit normals (N, 3): how the distance follows the points."""
+        """Compute the unit normals (N, 3), by which the distance follows the points."""
         ...
 
     def design(self, points: Array, part: Parts) -> Array:
-        """(N, p) how far the surface moves outwards at each point with each parameter."""
+        """Compute how far (N, p) the surface moves outwards at each point with each parameter."""
         ...
 
     def moved(self, step: Array) -> Self:
-        """The surface after a `step` (p,)."""
+        """Return the surface after a `step` (p,) of its parameters."""
         ...
 
     def values(self) -> dict[str, Any]:
-        """Where it lies in the camera frame, in mm, by the names that result files use."""
+        """Return the surface's place in the camera frame, in mm, by the names of result files."""
         ...
 
 
@@ -47,7 +47,7 @@ S = TypeVar("S", bound=Shape)
 
 
 def nearest_to(shape: S, points: Array, part: Parts, *, least: float | None = None) -> S:
-    """The surface of least squares of its plain distances from `points` (N, 3), from a start near it.
+    """Fit the surface with the least squares of its plain distances from `points` (N, 3), from a start near it.
 
     What the points fix by less than `least` of what they fix best stays as it is; None: by rounding errors only.
     """
@@ -80,12 +80,12 @@ class ParallelPlanes:
 
     @classmethod
     def through(cls, normal: Array, centres: Array) -> ParallelPlanes:
-        """Faces that may tilt both ways."""
+        """Make faces square to `normal` (3,) through `centres` (L, 3) that may tilt both ways."""
         return cls(normal, np.atleast_2d(centres), square_to(normal))
 
     @property
     def normal_gradient(self) -> Array:
-        """(3, p) how the normal follows the parameters."""
+        """Derivatives (3, p) of the normal by the parameters."""
         return np.hstack([np.zeros((3, len(self.centres))), self.axes])
 
     def misfit(self, points: Array, part: Parts) -> Array:
@@ -110,7 +110,7 @@ class ParallelPlanes:
         return {"normal": self.outward_normal, "centres": self.centres}
 
     def height(self, upper: int, lower: int) -> tuple[float, Array]:
-        """Distance in mm of two of the faces along the common normal, and its gradient (p,)."""
+        """Compute the distance in mm between two of the faces along the common normal, and its gradient (p,)."""
         between = self.centres[upper] - self.centres[lower]
         gradient = np.concatenate([np.zeros(len(self.centres)), between @ self.axes])
         gradient[upper], gradient[lower] = 1.0, -1.0
@@ -119,7 +119,7 @@ class ParallelPlanes:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sphere:
-    """A sphere. Parameters: the centre's three coordinates and the radius."""
+    """Sphere with the centre's three coordinates and the radius as parameters, in mm."""
 
     centre: Array
     radius: float
@@ -142,7 +142,7 @@ class Sphere:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Cylinder:
-    """A cylinder: `direction` (3,) unit, `centre` (3,) on its axis amid the points.
+    """Cylinder: `direction` (3,) unit, `centre` (3,) on its axis amid the points.
 
     Parameters: the axis moved along each of `axes` (3, 2), turned towards each of them (`turns`, else it keeps its
     direction: a circle in a section), and the radius.
@@ -156,17 +156,17 @@ class Cylinder:
 
     @classmethod
     def along(cls, centre: Array, direction: Array, radius: float, *, turns: bool = True) -> Cylinder:
-        """A cylinder with two axes square to its direction."""
+        """Make a cylinder with two axes square to its direction."""
         return cls(centre, direction, square_to(direction), radius, turns)
 
     @property
     def centre_gradient(self) -> Array:
-        """(3, p) how the point on the axis follows the parameters."""
+        """Derivatives (3, p) of the point on the axis by the parameters."""
         return np.hstack([self.axes, np.zeros((3, 3 if self.turns else 1))])
 
     @property
     def direction_gradient(self) -> Array:
-        """(3, p) how the direction follows the parameters."""
+        """Derivatives (3, p) of the direction by the parameters."""
         return np.hstack([np.zeros((3, 2)), self.axes, np.zeros((3, 1))])
 
     def misfit(self, points: Array, part: Parts) -> Array:

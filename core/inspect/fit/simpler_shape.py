@@ -49,7 +49,7 @@ _FREE = 1e-12
 
 
 def flat_points(shape: Shape, cloud: Cloud, errors: PointErrors) -> Message | None:
-    """Why a sphere or a cylinder cannot be told from its points; None if it can, or the shape is another one.
+    """Check whether a flat shape explains the points of a round one; return the message that says so, else None.
 
     Parameters
     ----------

@@ -57,5 +57,5 @@ def spanned(shape: Shape, points: Array, sigma: Array, part: Parts) -> bool:
 
 
 def faces_not_spanned(names: Sequence[Message]) -> Message:
-    """Why nothing is proven of faces called `names` whose points do not span them."""
+    """Make the note that faces called `names` prove nothing, since their points do not span them."""
     return note_of("surface.faces_not_spanned", name=list(names))

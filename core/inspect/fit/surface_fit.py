@@ -58,7 +58,7 @@ STEPS = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfaceFit(Generic[S]):
-    """A surface and what it rests on.
+    """Surface fitted to points of a cloud, with what acts on its parameters.
 
     Parameters
     ----------
@@ -87,17 +87,17 @@ class SurfaceFit(Generic[S]):
     faces_spanned: NDArray[np.bool_]
 
     def budget(self, gradient: Array) -> tuple[Contribution, ...]:
-        """What makes a quantity that follows the parameters with `gradient` (p,) uncertain."""
+        """Compute the budget of a quantity that follows the parameters with `gradient` (p,)."""
         return budget_of([(gradient, self.effects)])
 
     @property
     def parameters(self) -> int:
-        """How many parameters the shape has."""
+        """Number of parameters of the shape."""
         return len(self.effects[0].factor)
 
     @property
     def rms_mm(self) -> float:
-        """Root mean square of the residuals."""
+        """Root mean square of the residuals, in mm."""
         return float(np.sqrt(np.mean(self.residuals**2)))
 
 
@@ -165,7 +165,7 @@ def fit_surface(
 
 
 def too_few(count: int) -> InputError:
-    """The complaint that a surface cannot be fitted to so few points."""
+    """Make the error that a surface cannot be fitted to so few points."""
     return InputError(Message("surface.too_few_points", "{n} points are too few for it", n=count), todo=MORE_SWEEPS)
 
 
@@ -218,7 +218,7 @@ DRAWS, MOST_DRAWN = 200, 50_000
 
 
 class Range(NamedTuple):
-    """The range that holds 95 % of N values, of `samples` points or cells, and how it follows each value: (N,)."""
+    """Range that holds 95 % of N values, of `samples` points or cells, with the weight (N,) of each value in it."""
 
     value: float
     weight: Array
@@ -227,7 +227,7 @@ class Range(NamedTuple):
 
 
 def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
-    """The range of a cloud's points in one direction, from their heights (N,) in mm, or their means over cells."""
+    """Compute the range of a cloud's points in one direction by their heights (N,) in mm, or by means over cells."""
     cell = _cells(cloud.points, cell_mm) if cell_mm > 0 else np.arange(len(heights), dtype=np.int64)
     share = 1.0 / np.bincount(cell)[cell]
     values = np.asarray(np.bincount(cell, share * heights), dtype=np.float64)
@@ -243,7 +243,7 @@ def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
 
 
 def u_of_quantiles(values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64]) -> float:
-    """Standard uncertainty of Σ sign · quantile of `values` (N,), by drawing their groups (N,) again, with repeats."""
+    """Compute the standard uncertainty of Σ sign · quantile of `values` (N,) by drawing groups (N,) with repeats."""
     order = np.argsort(values, kind="stable")
     order = order[:: max(1, len(order) // MOST_DRAWN)]
     ranked, of = values[order], group[order]
