@@ -10,25 +10,25 @@ from core.messages import Message
 
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Distance of two points, of a point from a plane or an axis, of a plane's middle from another plane."""
+    """Measure the distance of two points, of a point from a plane or an axis, or of a plane's middle from a plane."""
     a, b = elements_of(spec, scene)
     return derived_result(spec, scene, "distance", distance(a, b))
 
 
 def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Angle of two planes, two axes, or an axis and a plane."""
+    """Measure the angle between two planes, two axes, or an axis and a plane."""
     return derived_result(spec, scene, "angle", angle(*directions_of(spec, scene)))
 
 
 def derived_result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
-    """The one row of a feature that is made of others, with what is told of these."""
+    """Make the result of a feature that is made of others: one row, with the notes on these."""
     notes = tuple(note for name in dict.fromkeys(spec.of) for note in scene.found[name].notes)
     row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule, notes=notes)
     return FeatureResult(spec, characteristics=(row,))
 
 
 def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, ...]:
-    """The elements a feature is made of; InputError if one of them was not measured."""
+    """Collect the elements a feature is made of; InputError if one of them was not measured."""
     elements = []
     for name in spec.of:
         element = scene.found[name].element
@@ -42,7 +42,7 @@ def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, ...]:
 
 
 def directions_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
-    """The two elements of a feature that follows their directions; InputError if one is a point or was not measured."""
+    """Collect the two elements of a feature of directions; InputError if one is a point or was not measured."""
     a, b = elements_of(spec, scene)
     if "point" in (a.kind, b.kind):
         raise InputError(

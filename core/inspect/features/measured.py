@@ -36,7 +36,7 @@ from core.scan.surface.triangles import Triangles
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FeatureResult:
-    """A feature as it was measured.
+    """Result of a feature: its characteristics, the points used, and the surface fitted to them.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class FeatureResult:
 
 @dataclass(eq=False, slots=True)
 class Scene:
-    """What features are measured in: one scan, what was found in it so far, and the part's frame.
+    """Scene that features are measured in: one scan, what was found in it so far, and the part's frame.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class Scene:
     found_planes: dict[float, tuple[FoundPlane, ...]] = field(default_factory=dict)
 
     def planes(self, margin_mm: float) -> tuple[FoundPlane, ...]:
-        """The plane faces of the cloud, found once."""
+        """Find the plane faces of the cloud, once for each margin."""
         if margin_mm not in self.found_planes:
             self.ensure_normals()
             found = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
@@ -148,7 +148,7 @@ class Scene:
         notes: tuple[Message, ...] = (),
         doubts: Doubts = (),
     ) -> Characteristic:
-        """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter".
+        """Make the row for `result` of a feature, as "ball diameter"; "": the row of its `kind`.
 
         It proves nothing by the doubts of the scan, nor by the `doubts` of its points; one of their light is seen in
         its budget. Its notes tell of all but those of the scan.

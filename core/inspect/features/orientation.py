@@ -32,12 +32,18 @@ MOST_ASKEW = np.pi / 4
 
 
 def measure_parallelism(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """How far the first feature is from parallel to the second, its datum; InputError if that is no plane or axis."""
+    """Measure how far the first feature is from parallel to the second, its datum, as the width of a zone in mm.
+
+    InputError if one of them is a point or was not measured, or they lie more than 45° from parallel.
+    """
     return _measured(spec, scene, 0.0)
 
 
 def measure_perpendicularity(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """How far the first feature is from perpendicular to the second; InputError if that is no plane or axis."""
+    """Measure how far the first feature is from perpendicular to the second, as the width of a zone in mm.
+
+    InputError if one of them is a point or was not measured, or they lie more than 45° from perpendicular.
+    """
     return _measured(spec, scene, np.pi / 2)
 
 

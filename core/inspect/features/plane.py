@@ -35,7 +35,7 @@ def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """The place amid the points of a small region, on the plane through them.
+    """Measure the place amid the points of a small region, on the plane through them.
 
     Of that piece of surface the residuals are judged as those of a face; the place itself rests on three numbers of it,
     and of one measured point nothing is left over that could be judged.

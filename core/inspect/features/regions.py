@@ -25,7 +25,7 @@ SEEDS = 4
 
 
 def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
-    """Indices of the points of a region that pass the filter by σ; all of the cloud's where it is to be found.
+    """Select the points of a region that pass the filter by σ, all of the cloud's if it is to be found; return indices.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
 
 
 def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> GrownFace:
-    """The face that goes on from a place, of this kind; None: the simplest that the points allow.
+    """Grow the face that goes on from a place, of this kind; None: the simplest that the points allow.
 
     Raises
     ------
@@ -72,13 +72,13 @@ def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> Grow
 
 
 def sure_enough(indices: Indices, filters: Filters, scene: Scene) -> Indices:
-    """Those of the points that pass the filter by σ, ascending."""
+    """Select those of the points that pass the filter by σ; return their indices, ascending."""
     allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
     return np.sort(indices[scene.cloud.sigma[indices] <= allowed])
 
 
 def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
-    """Indices of the points of the plane face in a region, less its margin.
+    """Select the points of the plane face in a region, less its margin; return their indices.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _no_face(count: int) -> InputError:
 
 
 def in_part(points: Array, scene: Scene) -> Array:
-    """Points (N, 3) of the camera frame in part coordinates."""
+    """Transform points (N, 3) in mm of the camera frame into part coordinates."""
     return points if scene.pose_camera_part is None else scene.pose_camera_part.inverse().apply(points)
 
 

@@ -346,7 +346,7 @@ def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: P
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pattern:
-    """`height` (n,) in mm of n places of one face from their mean, `count` (n,) of their stretches, `at` (n, sides)."""
+    """Pattern of a face: `height` (n,) in mm of places from their mean, `count` (n,) of stretches, `at` (n, sides)."""
 
     height: Array
     count: NDArray[np.intp]
