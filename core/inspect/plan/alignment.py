@@ -46,7 +46,7 @@ BETTER = 2.0
 
 
 def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
-    """Part coordinates into the camera frame; see `core.inspect.plan.inspection_plan.PartFrame`.
+    """Compute the pose of part coordinates by 3-2-1; see `core.inspect.plan.inspection_plan.PartFrame`.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def three_two_one(primary: Element, secondary: Element, tertiary: Element | None
 
 
 def unfixed(secondary: Element, tertiary: Element | None) -> int | None:
-    """Along which part coordinate, 0 or 1, no feature fixes the origin of `three_two_one`; None: all are fixed."""
+    """Return along which part coordinate, 0 or 1, no feature fixes the origin of `three_two_one`; None: all fixed."""
     if tertiary is not None:
         return None
     return 1 if secondary.kind == "plane" else 0
@@ -95,7 +95,7 @@ def unfixed(secondary: Element, tertiary: Element | None) -> int | None:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Aligned:
-    """The nominal surface's coordinates into the camera frame, and the median distance in mm that is left."""
+    """Pose of the nominal surface's coordinates in the camera frame, and the median distance in mm that is left."""
 
     pose_camera_nominal: Pose
     left_mm: float

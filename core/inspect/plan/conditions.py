@@ -13,7 +13,7 @@ REFERENCE_C = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Temperature:
-    """Of a part, in °C and 1/K, each with its standard uncertainty; the scale's, if it is known, in the same way."""
+    """Temperature and expansion of a part, in °C and 1/K, each with its standard uncertainty; the scale's likewise."""
 
     part_celsius: float
     u_part_celsius: float
@@ -35,7 +35,7 @@ class Temperature:
 
 @dataclass(frozen=True, slots=True)
 class Master:
-    """A known length that was measured like the part.
+    """Known length that was measured like the part.
 
     Parameters
     ----------
@@ -67,6 +67,6 @@ class Master:
 
     @property
     def remaining_doubts(self) -> Doubts:
-        """Those that do not cancel in a comparison: with one calibration the size of the plane target does."""
+        """Doubts that do not cancel in a comparison: with one calibration that of the plane target's size does."""
         cancelling = SIZE_UNCONFIRMED.fact if self.same_calibration else ""
         return tuple(doubt for doubt in self.doubts if doubt.fact != cancelling)

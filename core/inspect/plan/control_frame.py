@@ -43,7 +43,7 @@ LETTERS = "ABCDEFGHJKLMNPRSTUVWYZ"
 
 @dataclass(frozen=True, slots=True)
 class ControlFrame:
-    """One: its symbol, the zone's width in mm, "⌀" or "S⌀" of a round zone (else ""), and letters of its datums."""
+    """Feature control frame: its symbol, the zone's width in mm, "⌀" or "S⌀" of a round zone (else ""), and datums."""
 
     symbol: ToleranceSymbol
     zone_mm: float
@@ -52,14 +52,14 @@ class ControlFrame:
 
 
 def datum_letters(plan: InspectionPlan) -> dict[str, str]:
-    """Letters by the names of features that are datums: those of the part coordinates first, in their order."""
+    """Assign letters to the names of features that are datums: those of the part coordinates first, in their order."""
     names = list(plan.frame.names) if plan.frame is not None else []
     names += [spec.of[1] for spec in plan.features if _has_own_datum(spec)]
     return dict(zip(dict.fromkeys(names), LETTERS, strict=False))
 
 
 def control_frames(plan: InspectionPlan) -> Mapping[str, ControlFrame]:
-    """Of each characteristic that is a form or a lie after ISO 1101 and has a tolerance, by its name."""
+    """Make the control frames of characteristics that are a form or a lie after ISO 1101 with a tolerance, by name."""
     letters, frames = datum_letters(plan), dict[str, ControlFrame]()
     for spec in plan.features:
         for name, result in results_of(spec).items():
@@ -74,7 +74,7 @@ def control_frames(plan: InspectionPlan) -> Mapping[str, ControlFrame]:
 
 
 def datums_of(spec: FeatureSpec, plan: InspectionPlan) -> tuple[str, ...]:
-    """Names of the features that are the datums of this one, in their order."""
+    """Return the names of the features that are the datums of this one, in their order."""
     if spec.position is not None or (spec.deviation is not None and spec.deviation.align == "frame"):
         return () if plan.frame is None else plan.frame.names
     return spec.of[1:] if _has_own_datum(spec) else ()

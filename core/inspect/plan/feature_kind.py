@@ -28,7 +28,7 @@ whole scan."""
 
 @dataclass(frozen=True, slots=True)
 class ResultKind:
-    """A characteristic that a kind of feature gives.
+    """Characteristic that a kind of feature gives.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class ResultKind:
 
 @dataclass(frozen=True, slots=True)
 class NumberField:
-    """A number in the form; `key` is the name of the setting.
+    """Field of the form for a number; `key` is the name of the setting.
 
     With `none` it may be none, which is shown so; `first` is where it begins when one is wanted.
     """
@@ -75,7 +75,7 @@ class NumberField:
 
 @dataclass(frozen=True, slots=True)
 class ChoiceField:
-    """One of several in the form: `choices` are (value, label)."""
+    """Field of the form for one of several `choices`, each (value, label)."""
 
     key: str
     label: str
@@ -85,7 +85,7 @@ class ChoiceField:
 
 @dataclass(frozen=True, slots=True)
 class TextField:
-    """A line of text in the form."""
+    """Field of the form for a line of text."""
 
     key: str
     label: str
@@ -98,7 +98,7 @@ FormField: TypeAlias = NumberField | ChoiceField | TextField
 
 @dataclass(frozen=True, slots=True)
 class FeatureKind:
-    """One kind of feature. Texts are English labels that the window translates.
+    """Kind of feature; texts are English labels that the window translates.
 
     Parameters
     ----------
@@ -153,16 +153,16 @@ class FeatureKind:
 
     @property
     def measure(self) -> Callable[..., Any]:
-        """The function that measures it."""
+        """Function that measures a feature of this kind."""
         module, _, function = self.fit.partition(":")
         found: Callable[..., Any] = getattr(importlib.import_module(module), function)
         return found
 
     @property
     def expands(self) -> bool:
-        """Whether one of its results grows with the part's temperature."""
+        """Whether a result of this kind grows with the part's temperature."""
         return any(result.expands for result in self.results)
 
     def result(self, name: str) -> ResultKind:
-        """Its result called so; KeyError if it gives none."""
+        """Find the result called `name`; KeyError if the kind gives none."""
         return {result.name: result for result in self.results}[name]

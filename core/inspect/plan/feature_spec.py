@@ -17,21 +17,21 @@ Place: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Auto:
-    """Found in the cloud: the surface of this kind that explains most, or the `number`-th most of planes."""
+    """Surface found in the cloud: the one of its kind that explains most, or the `number`-th most of planes."""
 
     number: int = 1
 
 
 @dataclass(frozen=True, slots=True)
 class Polygon:
-    """All points seen inside a polygon of the picture; `corners_px` (u, v)."""
+    """Region of the points seen inside a polygon of the picture; `corners_px` (u, v)."""
 
     corners_px: tuple[Pixel, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class InSphere:
-    """All points within `radius_mm` of a place in part coordinates."""
+    """Region of the points within `radius_mm` of a place in part coordinates."""
 
     centre_mm: Place
     radius_mm: float
@@ -39,7 +39,7 @@ class InSphere:
 
 @dataclass(frozen=True, slots=True)
 class InBox:
-    """All points in a box of part coordinates, along its axes."""
+    """Region of the points in a box of part coordinates, along its axes."""
 
     low_mm: Place
     high_mm: Place
@@ -47,14 +47,14 @@ class InBox:
 
 @dataclass(frozen=True, slots=True)
 class PointsOf:
-    """The points another feature used."""
+    """Region of the points that another feature used."""
 
     feature: str
 
 
 @dataclass(frozen=True, slots=True)
 class FaceAt:
-    """The face that goes on from one place, as far as it reaches: a pixel, or a place in part coordinates.
+    """Face that goes on from one place, as far as it reaches: a pixel, or a place in part coordinates.
 
     Of a sphere or a cylinder that surface is meant, of a section or a deviation whichever is there, else a plane face.
     """
@@ -72,7 +72,7 @@ Region: TypeAlias = Auto | Polygon | InSphere | InBox | PointsOf | FaceAt
 
 @dataclass(frozen=True, slots=True)
 class Filters:
-    """Which points of a region are used, and what the form is the spread of.
+    """Filters of the points of a region, and the length in mm below which form counts as noise.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Filters:
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """One measurement in a section: between positions in mm along it.
+    """Measurement in a section, between positions in mm along it.
 
     `kind` "height": of the line over `second` above that over `first`, square to it. "distance": from the middle of one
     stretch to the middle of the other. "radius": of the circle over `first`.
@@ -109,7 +109,7 @@ class Cut:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A cross-section: the plane through the camera's ray of two pixels, or through a place of part coordinates.
+    """Cross-section: the plane through the camera's ray of two pixels, or through a place of part coordinates.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A comparison with a nominal surface.
+    """Comparison with a nominal surface.
 
     Parameters
     ----------
@@ -157,14 +157,14 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where a cylinder's axis or a sphere's centre should be: a place in part coordinates."""
+    """Place in part coordinates where a cylinder's axis or a sphere's centre should be."""
 
     at_mm: Place = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class FeatureSpec:
-    """One feature.
+    """Feature to be inspected.
 
     Parameters
     ----------
@@ -203,18 +203,18 @@ class FeatureSpec:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Names of all features it rests on."""
+        """Names of all features that this one rests on."""
         return (*self.of, *(region.feature for region in self.regions if isinstance(region, PointsOf)))
 
     @property
     def in_part_coordinates(self) -> bool:
-        """Whether it can only be measured once the part's frame is known."""
+        """Whether the feature can only be measured once the part's frame is known."""
         placed = self.section is not None and self.section.line_px is None
         framed = self.deviation is not None and self.deviation.align == "frame"
         return placed or framed or self.position is not None or any(map(_is_placed, self.regions))
 
     def limits_of(self, result: str) -> Limits | None:
-        """The limits of one of its results, as "diameter" or "height 2"; None: nothing."""
+        """Return the limits of a result, as "diameter" or "height 2"; None: there are none."""
         asked = dict(self.limits)
         name, _, number = result.rpartition(" ")
         if not self.nominal_heights or name not in asked or not number.isdigit():

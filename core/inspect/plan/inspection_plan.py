@@ -29,13 +29,13 @@ class PartFrame:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The features it rests on."""
+        """Names of the features that part coordinates rest on."""
         return tuple(name for name in (self.primary, self.secondary, self.tertiary) if name)
 
 
 @dataclass(frozen=True, slots=True)
 class InspectionPlan:
-    """All features to be inspected.
+    """Plan of all features to be inspected.
 
     Parameters
     ----------
@@ -58,16 +58,16 @@ class InspectionPlan:
     k: float = 2.0
 
     def feature(self, name: str) -> FeatureSpec:
-        """The feature called so; KeyError if there is none."""
+        """Find the feature called `name`; KeyError if there is none."""
         return {one.name: one for one in self.features}[name]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the features."""
+        """Names of the features."""
         return tuple(feature.name for feature in self.features)
 
     def ordered(self) -> tuple[FeatureSpec, ...]:
-        """The features so that each comes after all it rests on.
+        """Order the features so that each comes after all it rests on.
 
         Raises
         ------

@@ -241,23 +241,23 @@ KINDS: tuple[FeatureKind, ...] = (
 
 
 def kind_of(spec: FeatureSpec) -> FeatureKind:
-    """The kind of a feature; KeyError if there is none of its kind's name."""
+    """Find the kind of a feature; KeyError if there is none of its kind's name."""
     return kind_named(spec.kind)
 
 
 def kind_named(name: str) -> FeatureKind:
-    """The kind called so; KeyError if there is none."""
+    """Find the kind called `name`; KeyError if there is none."""
     own = {kind.name: kind for kind in KINDS}
     return own[name] if name in own else brought_kinds()[name][0]
 
 
 def every_kind() -> tuple[FeatureKind, ...]:
-    """The program's own kinds, and those that other packages bring."""
+    """Return the program's own kinds, and those that other packages bring."""
     return (*KINDS, *(kind for kind, _ in brought_kinds().values()))
 
 
 def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
-    """Kinds that other packages bring and where they come from; none that takes the name of one of our own."""
+    """Find kinds that other packages bring, with their origin; none that takes the name of one of our own."""
     from core.inspect.plan.plugins import plugins  # looking for packages takes time that most never need
 
     own = {kind.name for kind in KINDS}
@@ -265,7 +265,7 @@ def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
 
 
 def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
-    """What a feature gives, by the names that limits are asked by: of a section those of its cuts."""
+    """Return the kinds of a feature's results, by the names of their limits: of a section those of its cuts."""
     kind = kind_of(spec)
     if kind.settings == "section" and spec.section is not None:
         return {cut.name: kind.result(cut.kind) for cut in spec.section.cuts}
@@ -273,10 +273,10 @@ def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
 
 
 def expanding() -> frozenset[str]:
-    """Names of the characteristics that grow with the part's temperature."""
+    """Return the names of the characteristics that grow with the part's temperature."""
     return frozenset(result.name for kind in every_kind() for result in kind.results if result.expands)
 
 
 def expands(characteristic: Characteristic) -> bool:
-    """Whether it is a length that grows with the part: no angle, and no deviation of form."""
+    """Whether a characteristic is a length that grows with the part: no angle, and no deviation of form."""
     return characteristic.kind in expanding() and characteristic.quantity == "length"

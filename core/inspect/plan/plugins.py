@@ -26,7 +26,7 @@ _NO_CHECK = Message("plugin.why_no_check", "it is no function")
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A check of inspections: `of` takes an `core.inspect.evaluate.Inspection` and gives what is to be told."""
+    """Check of inspections: `of` takes a `core.inspect.evaluate.Inspection` and returns sentences about it."""
 
     name: str
     origin: Origin
@@ -35,7 +35,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Plugins:
-    """What other packages bring: kinds and their origin by name, checks, and what of it cannot be used."""
+    """Kinds and their origin by name, and checks, that other packages bring, with the problems of unusable ones."""
 
     kinds: dict[str, tuple[FeatureKind, Origin]]
     checks: tuple[Check, ...]
@@ -44,7 +44,7 @@ class Plugins:
 
 @cache
 def plugins() -> Plugins:
-    """All that is installed, loaded once."""
+    """Load the kinds and checks of all installed packages, once."""
     kinds, checks, problems = dict[str, tuple[FeatureKind, Origin]](), list[Check](), list[Message]()
     for group in (KINDS_GROUP, CHECKS_GROUP):
         for one in by_entry_points(group):
