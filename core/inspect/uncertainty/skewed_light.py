@@ -29,6 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr, stdtrit
 
 from core.findings.proof import Doubt, Doubts
 from core.findings.table import note_of
@@ -43,7 +44,9 @@ from core.scan.surface.cloud import Cloud
 MEAN_OF_CUMULANT = 0.8
 """Mean depth of the light over the cube root of its third cumulant, at most; see above."""
 SURELY = 4.0
-"""Standard errors by which sections are surely skewed. Held by tests/accuracy/test_matter.py on matt parts."""
+"""Symmetric sections may seem skewed as seldom as a normal deviate exceeds it.
+
+Held by tests/accuracy/test_matter.py on matt parts."""
 LEAST_SKEWNESS = 0.015
 """Skewness from which on it counts: what lens, pixels and slanted faces may do is less."""
 LEAST_SWEEPS = 10.0
@@ -79,6 +82,17 @@ def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> MeanSkewness:
     return MeanSkewness(mean, error or math.inf, alike)
 
 
+def is_surely_skewed(seen: MeanSkewness) -> bool:
+    """Whether sections are skewed by more than chance, lens and slanted faces explain.
+
+    The scatter of n sweeps tells the error, so the limit is that of Student's t with n − 1 degrees of freedom.
+    """
+    if seen.sweeps < LEAST_SWEEPS:
+        return False
+    limit = float(stdtrit(seen.sweeps - 1, ndtr(SURELY)))
+    return abs(seen.mean) > max(limit * seen.error, LEAST_SKEWNESS)
+
+
 def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) -> Array:
     """How far behind each part's surface its light comes from at most, on the mean, in mm of depth; 0 if not surely.
 
@@ -97,7 +111,7 @@ def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) ->
         if not len(mine) or np.ptp(direction[mine], axis=0).max() > 0:
             continue
         seen = mean_skewness(cloud.skewness[mine], cloud.sweep[mine])
-        if seen.sweeps >= LEAST_SWEEPS and abs(seen.mean) > max(SURELY * seen.error, LEAST_SKEWNESS):
+        if is_surely_skewed(seen):
             found[number] = MEAN_OF_CUMULANT * np.cbrt(seen.mean) * float(np.median(cloud.spread_mm[mine]))
     return found
 

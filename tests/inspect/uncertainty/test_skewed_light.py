@@ -16,6 +16,7 @@ from core.inspect.uncertainty.skewed_light import (
     MeanSkewness,
     doubts_of_light,
     farthest_mean_mm,
+    is_surely_skewed,
     mean_skewness,
     unseen_mean_mm,
 )
@@ -131,6 +132,14 @@ def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them
     seen = gauge_of(scan, 0.08, 0.08)
     assert TOLD not in {note.code for note in seen.notes}
     assert seen.U_mm < 1.1 * gauge_of(scan, 0.0).U_mm
+
+
+@pytest.mark.parametrize(
+    ("sweeps", "errors", "surely"), [(1e4, 4.1, True), (23, 4.1, False), (23, 5.2, True), (9, 99, False)]
+)
+def test_the_fewer_sweeps_tell_their_own_error_the_more_of_it_is_asked(sweeps, errors, surely):
+    assert is_surely_skewed(MeanSkewness(0.02 * errors, 0.02, sweeps)) is surely
+    assert is_surely_skewed(MeanSkewness(-0.02 * errors, 0.02, sweeps)) is surely
 
 
 def test_few_sweeps_tell_nothing():
