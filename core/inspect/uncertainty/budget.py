@@ -39,13 +39,13 @@ UNKNOWNS = 4
 
 
 def combined(contributions: Iterable[Contribution]) -> float:
-    """Combined standard uncertainty in mm of independent contributions."""
+    """Compute the combined standard uncertainty in mm of independent contributions."""
     return float(np.sqrt(sum(row.u_mm**2 for row in contributions)))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Effect:
-    """What one cause does to p quantities measured in one scan: their errors are factor·ζ, ζ of unit variance.
+    """Effect of one cause on p quantities measured in one scan: their errors are factor·ζ, ζ of unit variance.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def budget(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Contribution, ...]:
-    """What each cause contributes to q.
+    """Compute the contribution of each cause to the uncertainty of a quantity q.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def effects(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Effect, ...]:
-    """What each cause does to p quantities that follow the stretches' misfits with `gains` (p, J); else as `budget`."""
+    """Compute the effect of each cause on p quantities that follow misfits with `gains` (p, J); else as `budget`."""
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []
@@ -129,7 +129,7 @@ def effects(
 
 
 def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribution, ...]:
-    """What each cause contributes to a quantity that follows several groups of quantities of one scan.
+    """Compute the contribution of each cause to a quantity that follows several groups of quantities of one scan.
 
     Parameters
     ----------

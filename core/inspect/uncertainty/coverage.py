@@ -23,7 +23,7 @@ ROUNDING = 1e-9
 
 
 def effective_dof(contributions: Iterable[Contribution]) -> float:
-    """Effective degrees of freedom ν_eff = u_c⁴ / Σ (u_i⁴/ν_i) of independent contributions.
+    """Compute the effective degrees of freedom ν_eff = u_c⁴ / Σ (u_i⁴/ν_i) of independent contributions.
 
     Infinite if every u is known, or one is not known at all.
 
@@ -39,7 +39,7 @@ def effective_dof(contributions: Iterable[Contribution]) -> float:
 
 
 def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:
-    """The coverage factor k = t_p(ν), with ν cut off to a whole number, that gives U the coverage probability p.
+    """Compute the coverage factor k = t_p(ν), ν cut off to a whole number, that gives U the coverage probability p.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:
 
 
 def student_factor(k: float, contributions: Iterable[Contribution]) -> float:
-    """The factor, to two decimals, that covers as much with a budget's ν_eff as `k` does where u is known: `k` itself.
+    """Compute the factor, to two decimals, that covers with a budget's ν_eff as much as `k` does where u is known.
 
     Examples
     --------

@@ -44,7 +44,7 @@ that points were averaged over are known by their usual length only."""
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sources:
-    """How strongly each cause of error acts on the J stretches, for unit variance each; see the module."""
+    """Effects of each cause of error on J stretches, for unit variance each; see the module."""
 
     stretch: NDArray[np.int64]  # (N,) of each point
     share: Array  # (N,) weight of each point in its stretch, summing to 1
@@ -64,12 +64,12 @@ class Sources:
 
     @property
     def explained(self) -> Array:
-        """(J, K′) effects of the common errors that a fit may estimate from the points."""
+        """Effects (J, K′) of the common errors that a fit may estimate from the points."""
         return np.asarray(self.common[:, ~self.unexplained])
 
     @property
     def measured(self) -> Array:
-        """(J, K″) effects of those of them whose size was measured."""
+        """Effects (J, K″) of the common errors that a fit may estimate and whose size was measured."""
         return np.asarray(self.common[:, ~(self.unexplained | self.assumed)])
 
     @classmethod
@@ -82,7 +82,7 @@ class Sources:
         patch: NDArray[np.int64],
         errors: PointErrors,
     ) -> Sources:
-        """The stretches of a cloud's points and what acts on them.
+        """Divide a cloud's points into stretches and compute what acts on them.
 
         Parameters
         ----------
@@ -153,16 +153,16 @@ class Sources:
         )
 
     def effects(self, others: Array) -> Array:
-        """A = [`others` (J, q), `speckle`, `sweeps`], (J, n)."""
+        """Stack the effects A (J, n) = [`others` (J, q), `speckle`, `sweeps`]."""
         return np.hstack([others, self.speckle, self.sweeps])
 
     def information(self, others: Array, weight: Array) -> Array:
-        """Aᵀ W A (n, n) of the `effects` A; `weight` (J,) is the diagonal of W."""
+        """Compute Aᵀ W A (n, n) of the `effects` A; `weight` (J,) is the diagonal of W."""
         of_swept, fan_rows = self.information_of_each(others, weight)
         return of_swept + fan_rows.T @ fan_rows
 
     def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
-        """What stretches of sweeps add to `information` (n, n), and rows R (…, n) of which those of the fan add Rᵀ R.
+        """Compute the `information` (n, n) of stretches of sweeps, and rows R (…, n) of the fan, which add Rᵀ R.
 
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
@@ -175,7 +175,7 @@ class Sources:
         return of_swept, rows
 
     def mean(self, values: Array) -> Array:
-        """Weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
+        """Compute the weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
         columns = values.reshape(len(values), -1)
         means = np.column_stack([np.bincount(self.stretch, self.share * column) for column in columns.T])
         return np.asarray(means.reshape(len(self.own), *values.shape[1:]))

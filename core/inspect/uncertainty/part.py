@@ -37,7 +37,7 @@ UNKNOWN_LETS_LIGHT_IN = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A kind of material: whether all light comes from its surface, and how it expands, in 1/K with its u."""
+    """Kind of material: whether all light comes from its surface, and its expansion in 1/K with its u."""
 
     opaque: bool
     alpha: float = SUSPECTED_ALPHA
@@ -57,7 +57,7 @@ MATERIALS: Mapping[str, Material] = {
 
 
 class Warmth(NamedTuple):
-    """A temperature in °C, its standard uncertainty, and whether both are assumed."""
+    """Temperature in °C, its standard uncertainty, and whether both are assumed."""
 
     celsius: float
     u_celsius: float
@@ -65,7 +65,7 @@ class Warmth(NamedTuple):
 
     @classmethod
     def of(cls, celsius: float | None, u_celsius: float | None) -> Warmth:
-        """What is stated, else what is assumed."""
+        """Take the temperature as stated, else as assumed."""
         if celsius is None or u_celsius is None:
             return cls(SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, assumed=True)
         return cls(celsius, u_celsius, assumed=False)
@@ -73,7 +73,7 @@ class Warmth(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TargetTemperature:
-    """How warm the plane target was in its pictures, in °C, and how it expands, in 1/K; None: nothing is stated.
+    """Temperature of the plane target in its pictures in °C, and its expansion in 1/K; None: nothing is stated.
 
     It is the scale of all lengths: one that was warm is longer than its drawing says, and all else measured too short.
     """
@@ -85,12 +85,12 @@ class TargetTemperature:
 
     @property
     def warmth(self) -> Warmth:
-        """Its temperature, stated or assumed."""
+        """Temperature of the plane target, stated or assumed."""
         return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:
-        """Its expansion coefficient and the u of that, stated or assumed."""
+        """Expansion coefficient in 1/K of the plane target and its u, stated or assumed."""
         if self.alpha is None or self.u_alpha is None:
             return SUSPECTED_TARGET_ALPHA, SUSPECTED_TARGET_ALPHA_SD
         return self.alpha, self.u_alpha
@@ -102,7 +102,7 @@ TARGET_AT_20 = TargetTemperature(20.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What is stated of a part; None: nothing is.
+    """Statements on a part; None: nothing is stated.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Part:
 
     @property
     def lets_light_in(self) -> float:
-        """Probability that light comes from below its surface, before any picture is seen.
+        """Probability that light comes from below the part's surface, before any picture is seen.
 
         Of an offset that was measured it is none: that holds all of it.
         """
@@ -144,12 +144,12 @@ class Part:
 
     @property
     def warmth(self) -> Warmth:
-        """Its temperature, stated or assumed."""
+        """Temperature of the part, stated or assumed."""
         return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:
-        """Its expansion coefficient in 1/K and the u of that, stated, the material's, or assumed."""
+        """Expansion coefficient of the part in 1/K and its u: stated, the material's, or assumed."""
         if self.alpha is not None and self.u_alpha is not None:
             return self.alpha, self.u_alpha
         known = Material(True) if self.material is None else MATERIALS[self.material]
@@ -157,17 +157,17 @@ class Part:
 
     @property
     def expansion_assumed(self) -> bool:
-        """Whether nothing says how it expands."""
+        """Whether the part's expansion is assumed: neither it nor a material that gives it is stated."""
         return self.alpha is None and self.material in (None, "sprayed")
 
     @property
     def thicker_mm(self) -> float:
-        """What is added to a thickness as light shows it."""
+        """Correction in mm that is added to a thickness as light shows it."""
         return (self.offset_mm or 0.0) - (self.spray_mm or 0.0)
 
     @property
     def surface_rows(self) -> tuple[Contribution, ...]:
-        """What the offset and the layer of spray contribute to the uncertainty of a thickness; no zero rows."""
+        """Contributions of the offset and of the layer of spray to the uncertainty of a thickness; no zero rows."""
         rows = [(Cause.PART_OFFSET, self.offset_sd_mm, self.offset_mm), (Cause.SPRAY, self.spray_sd_mm, self.spray_mm)]
         if self.material == "sprayed" and self.spray_mm is None:
             rows.append((Cause.SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
@@ -175,7 +175,7 @@ class Part:
 
     @property
     def surface_notes(self) -> tuple[Message, ...]:
-        """What was added to a thickness, if anything was."""
+        """Notes on the correction that was added to a thickness, if any was."""
         if not self.thicker_mm:
             return ()
         return (
@@ -189,7 +189,7 @@ class Part:
 
     @property
     def assumed(self) -> tuple[Message, ...]:
-        """What is assumed of it, as notes."""
+        """Notes on what is assumed of the part."""
         notes = []
         if self.material is None:
             alpha, u_alpha = self.expansion

@@ -40,7 +40,7 @@ OWN_SHARE = 0.1
 
 @dataclass(frozen=True, eq=False)
 class PointErrors:
-    """How the errors of a cloud's points hang together.
+    """Errors of a cloud's points and how they are correlated.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class PointErrors:
 
     @property
     def doubts(self) -> Doubts:
-        """Why nothing measured in the scan proves anything: by its facts, and by what uncertainties do not hold."""
+        """Doubts that anything measured in the scan proves something: by its facts, and by what uncertainties lack."""
         missing = self.missing()
         of_u = (Doubt.of(note_of("inspection.missing_in_u", missing=missing)),) if missing else ()
         if self.facts is None:
@@ -96,7 +96,7 @@ class PointErrors:
         speckle: FanSpeckle | None = None,
         sweep_size: int = 3,
     ) -> PointErrors:
-        """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do.
+        """Make the errors of points of a scan from its features, its sweeps' covariance and displaced calibrations.
 
         `sweep_size` numbers describe a sweep.
         """
@@ -108,31 +108,31 @@ class PointErrors:
 
     @classmethod
     def of_fan(cls, pieces: Sequence[Centreline], common: CommonErrors) -> PointErrors:
-        """Of the points of the fan alone: `pieces` are its centrelines, averaged along themselves."""
+        """Make the errors of the points of the fan alone; `pieces` are its centrelines, averaged along themselves."""
         return cls(common=common, speckle_px=_correlation_px(pieces), swept=False)
 
     @property
     def calibrations(self) -> tuple[Cause, ...]:
-        """(K,) which calibration each of the common errors comes from; none where they are not known."""
+        """Calibrations (K,) that the common errors come from; () where they are not known."""
         return tuple(CALIBRATIONS[source] for source in self.sources)
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """(K,) the same as `core.calibrate.deviations` names them."""
+        """Calibrations (K,) that the common errors come from, as `core.calibrate.deviations` names them."""
         return () if self.common is None else self.common.sources
 
     def bent_light(self, cloud: Cloud) -> Array:
-        """Standard uncertainty (N,) in mm of a cloud's depths by light that does not lie in planes; 0 if it does."""
+        """Compute the standard uncertainty (N,) in mm of a cloud's depths by light of the fan in no planes; else 0."""
         if not self.knows(UNEXPLAINED) or self.common is None:
             return np.zeros(len(cloud))
         return self.common.sigma_of(UNEXPLAINED, cloud)
 
     def knows(self, source: Source) -> bool:
-        """Whether the errors of that calibration are among them."""
+        """Whether the errors of that calibration are among the common ones."""
         return self.common is not None and source in self.common.sources
 
     def missing(self) -> tuple[Message, ...]:
-        """What an uncertainty made of them does not hold, as the object of a sentence."""
+        """List what an uncertainty made of these errors lacks, as objects of a sentence."""
         lacking = []
         if self.swept and self.sweep_covariance is None:
             lacking.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
@@ -146,12 +146,12 @@ class PointErrors:
 
     @property
     def sweeps(self) -> int:
-        """How many sweeps the covariance holds."""
+        """Number of sweeps in the covariance."""
         return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // self.sweep_size
 
     @cached_property
     def planes_by_cause(self) -> Array:
-        """(3S, F + 3S) how the stacked π follow the fan's F cells, and what else errs in them; (0, F) if not known.
+        """Factor (3S, F + 3S) of the covariance of stacked π: by the fan's F cells, then all else; (0, F) if unknown.
 
         With P their covariance and C that with the cells, the square root of P − C Cᵀ.
         """
@@ -162,11 +162,11 @@ class PointErrors:
         return np.hstack([shared, _root(self.sweep_covariance - shared @ shared.T)])
 
     def forms(self, rays: Array, uv: Array) -> Array:
-        """(N, sweep_size) what the numbers of a sweep are multiplied by at `rays` (N, 3) of pixels `uv` (N, 2)."""
+        """Compute the factors (N, sweep_size) of the numbers of a sweep at `rays` (N, 3) of pixels `uv` (N, 2)."""
         return row_forms(rays, uv[:, 1], self.image_rows, self.sweep_size)
 
     def own_sigma(self, cloud: Cloud) -> Array:
-        """σ (N,) of each depth in mm less the share of its sweep's plane.
+        """Compute σ (N,) in mm of each depth less the share of its sweep's plane.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class PointErrors:
         return np.asarray(np.sqrt(own), dtype=np.float64)
 
     def places(self, cloud: Cloud) -> NDArray[np.int64]:
-        """Which of the points of `speckle` each of a cloud's (N,) is; −1 for none of them."""
+        """Find which of the points of `speckle` each of a cloud's (N,) is; −1 for none of them."""
         place = np.full(len(cloud), -1, dtype=np.int64)
         if self.speckle is not None:
             of_fan = np.flatnonzero(cloud.sweep < 0)
@@ -196,7 +196,7 @@ class PointErrors:
         return place
 
     def stretches(self, cloud: Cloud, part: NDArray[np.int64], place: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Number, from 0, of the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,).
+        """Number, from 0, the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,).
 
         Those of the fan are the cells of `speckle` where `place` (N,), as of `places`, knows the point.
         """
@@ -225,7 +225,7 @@ def _correlation_px(pieces: Sequence[Centreline]) -> float:
 
 
 def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number of the patch of its `face` (N,) each point (N, 2) lies in: PATCHES × PATCHES over each face's extent."""
+    """Number the patch of its `face` (N,) each point (N, 2) lies in: PATCHES × PATCHES over each face's extent."""
     number = np.zeros(len(flat), dtype=np.int64)
     for index in np.unique(face):
         mine = face == index
@@ -236,7 +236,7 @@ def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def pairs(first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number, from 0, of each different pair of numbers ≥ 0."""
+    """Number, from 0, each different pair of numbers ≥ 0."""
     return np.asarray(np.unique(first * (second.max() + 1) + second, return_inverse=True)[1], dtype=np.int64)
 
 

@@ -58,7 +58,7 @@ SHARE_THAT_MATTERS = 0.25
 
 
 class MeanSkewness(NamedTuple):
-    """Mean skewness of sections, its standard error, and how many sweeps, as many as weigh alike, tell it."""
+    """Mean skewness of sections, its standard error, and the number of sweeps, as many as weigh alike, it rests on."""
 
     mean: float
     error: float
@@ -66,7 +66,7 @@ class MeanSkewness(NamedTuple):
 
 
 def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> MeanSkewness:
-    """Mean of points' skewness (N,) and its standard error, by the scatter between their sweeps (N,).
+    """Compute the mean of points' skewness (N,) and its standard error, by the scatter between their sweeps (N,).
 
     The error is infinite where the scatter of fewer than three sweeps, or none at all, would have to tell.
     """
@@ -94,7 +94,9 @@ def is_surely_skewed(seen: MeanSkewness) -> bool:
 
 
 def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) -> Array:
-    """How far behind each part's surface its light comes from at most, on the mean, in mm of depth; 0 if not surely.
+    """Estimate how far behind each part's surface its light comes from at most, on the mean, in mm of depth.
+
+    It is 0 where sections are not surely skewed.
 
     Parameters
     ----------
@@ -124,7 +126,7 @@ where sections tell little."""
 
 
 def unseen_mean_mm(seen: MeanSkewness, spread_mm: float, lets_light_in: float) -> float:
-    """Standard uncertainty in mm by light from below, where this mean skewness was found.
+    """Compute the standard uncertainty in mm by light from below where this mean skewness was found.
 
     Twice as much holds 95 % of what is left: that is one-sided, and reaches far. The skewness is known by the scatter
     of n sweeps, so it is weighed by Student's t with n − 1 degrees of freedom.
@@ -165,7 +167,7 @@ NOTHING_SEEN = MeanSkewness(0.0, math.inf, 0.0)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LightBelow:
-    """How far behind each face its light comes from on the mean, in mm of depth.
+    """Mean depth in mm behind each face that its light comes from.
 
     `skewed_mm` at most where sections are surely skewed, `wider_mm` at most where they are surely wider than on the
     table; `unseen_mm` its standard uncertainty where they are neither. Faces that are skewed alike may be skewed by the
@@ -181,7 +183,7 @@ class LightBelow:
 def light_below(
     cloud: Cloud, part: NDArray[np.int64], direction: Array, stated: Part | None, light: PartLight | None = None
 ) -> LightBelow:
-    """What sections on each face show of light from below, and what they leave; arguments as `farthest_mean_mm`.
+    """Estimate light from below each face by its sections, and what they leave open; arguments as `farthest_mean_mm`.
 
     `stated` is what is known of the part; None: no more is reckoned with than what is seen. `light` is how much wider
     sections are on it than on the table: a face off the table is behind by what that may do, unless an offset that was
@@ -208,7 +210,7 @@ def light_below(
 
 
 def doubts_of_light(budget: Sequence[Contribution]) -> Doubts:
-    """Why a value with this budget proves nothing, if skewed light makes up much of it; else ()."""
+    """Make the doubts of a value with this budget if skewed light makes up much of it; else ()."""
     skewed = [row.u_mm for row in budget if row.source is Cause.SKEWED_LIGHT]
     rest = [row.u_mm for row in budget if row.source not in {Cause.SKEWED_LIGHT, *FROM_BELOW}]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
