@@ -12,7 +12,7 @@ from core.inspect.plan.feature_spec import FaceAt
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ClickedFace:
-    """One face.
+    """Face grown from a clicked point.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class ClickedFace:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ClickedFaces:
-    """The faces of one click or two; `parallel` are two planes with a distance, the one nearer to the camera first."""
+    """Faces of one click or two; `parallel` are two planes with a distance, the one nearer to the camera first."""
 
     faces: tuple[ClickedFace, ...]
     parallel: bool = False

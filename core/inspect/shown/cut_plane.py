@@ -33,7 +33,7 @@ ACROSS, HEIGHT = (1, 0, 0), (2, 2, 1)
 
 
 def turned_for(frame: ViewFrame, axis: int, turned_deg: float, tilted_deg: float) -> ViewFrame:
-    """`frame` as a plane square to `axis` stands in it: turned about its heights, then tilted about where it runs.
+    """Turn `frame` for a plane square to `axis`: about its heights, then tilt it about the direction it runs in.
 
     A turned plane square to x or y stays upright; a tilted one does not.
     """
@@ -44,7 +44,7 @@ def turned_for(frame: ViewFrame, axis: int, turned_deg: float, tilted_deg: float
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CutPlane:
-    """The plane on which coordinate number `axis` (an index of AXES) of `frame` is `at_mm`.
+    """Plane on which coordinate number `axis` (an index of AXES) of `frame` is `at_mm`.
 
     A plane at any angle stands in a frame that is turned (`turned_for`).
     """
@@ -55,27 +55,27 @@ class CutPlane:
 
     @property
     def normal(self) -> Array:
-        """(3,) unit vector of the axis it is square to, in the camera frame."""
+        """Unit vector (3,) of the axis the plane is square to, in the camera frame."""
         normal: Array = self.frame.axes[self.axis]
         return normal
 
     @property
     def upwards(self) -> int:
-        """1 where heights are the frame's z; −1 in the camera's, whose z points away from the viewer."""
+        """Sign of heights: 1 where they are the frame's z; −1 in the camera's, whose z points away from the viewer."""
         return -1 if self.frame.kind is FrameKind.CAMERA else 1
 
     @property
     def across(self) -> int:
-        """The axis along which a profile in it runs."""
+        """Number of the axis along which a profile in the plane runs."""
         return ACROSS[self.axis]
 
     @property
     def height(self) -> int:
-        """The axis along which heights of that profile count: z, or y in a plane square to z."""
+        """Number of the axis along which heights of that profile count: z, or y in a plane square to z."""
         return HEIGHT[self.axis]
 
     def corners(self, coordinates: Array) -> Array:
-        """A patch of it as large as points reach, given in its frame (N, 3): corners (4, 3) in the camera frame.
+        """Compute the corners (4, 3) in mm, camera frame, of a patch as large as points (N, 3) in its frame reach.
 
         Its lower edge comes first.
         """
@@ -88,7 +88,7 @@ class CutPlane:
         return self.frame.pose_camera_frame.apply(places)
 
     def profile(self, coordinates: Array) -> ShownProfile:
-        """What it cuts of points (N, 3), given in its frame: positions are along `across`, heights along `height`.
+        """Cut points (N, 3), given in mm in the plane's frame: positions are along `across`, heights along `height`.
 
         An outline, as a plane square to z cuts it, has no mean line.
         """
@@ -99,7 +99,7 @@ class CutPlane:
         return ShownProfile.of(position, height, means, USUAL.step_mm, MOST_DRAWN)
 
     def section(self, pose_camera_part: Pose | None) -> Section:
-        """The cross-section that measures an upright one; without part coordinates it is placed in the camera's."""
+        """Make the section that measures an upright plane; without part coordinates it is placed in the camera's."""
         pose = Pose.identity() if pose_camera_part is None else pose_camera_part
         place = np.zeros(3)
         place[self.axis] = self.at_mm

@@ -49,7 +49,7 @@ class DeviationMap:
 
     @property
     def classes(self) -> NDArray[np.int8]:
-        """(N,) −4 … 4; see `mark`."""
+        """Classes (N,), −4 … 4, of the deviations; see `mark`."""
         return classes_of(self.deviation, self.tolerance_mm)
 
     @property
@@ -58,14 +58,14 @@ class DeviationMap:
         return float(np.mean(np.abs(self.deviation) > self.tolerance_mm)) if len(self.deviation) else 0.0
 
     def histogram(self, bins: int = 40) -> tuple[Array, NDArray[np.int64]]:
-        """Edges (bins + 1,) in mm and how many places lie between them; the outermost hold all beyond."""
+        """Count the places between edges (bins + 1,) in mm, the outermost with all beyond; return edges and counts."""
         widest = max(1.5 * self.tolerance_mm, float(np.quantile(np.abs(self.deviation), 0.99)))
         edges = np.linspace(-widest, widest, bins + 1)
         return edges, np.histogram(np.clip(self.deviation, -widest, widest), edges)[0].astype(np.int64)
 
 
 def classes_of(deviation: Array, tolerance_mm: float) -> NDArray[np.int8]:
-    """Classes −4 … 4 of deviations (N,) by quarters of the tolerance; ±4 is beyond it.
+    """Compute the classes −4 … 4 of deviations (N,) in mm by quarters of the tolerance; ±4 is beyond it.
 
     Examples
     --------
@@ -77,13 +77,13 @@ def classes_of(deviation: Array, tolerance_mm: float) -> NDArray[np.int8]:
 
 
 def mark(number: int) -> str:
-    """The sign drawn for a class: + ++ +++ outwards, − −− −−− inwards, with ! beyond the tolerance."""
+    """Return the sign drawn for a class: + ++ +++ outwards, − −− −−− inwards, with ! beyond the tolerance."""
     outwards = MARKS[abs(int(number))]
     return outwards if number >= 0 else outwards.replace("+", "−")
 
 
 def bounds(number: int, tolerance_mm: float) -> tuple[float, float]:
-    """From where to where a class goes, in mm; −inf or inf beyond the tolerance.
+    """Return the lower and the upper end of a class, in mm; −inf or inf beyond the tolerance.
 
     Examples
     --------

@@ -34,7 +34,7 @@ class Changed:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownComparison:
-    """What the window shows of it.
+    """Comparison with another surface as the window shows it.
 
     Parameters
     ----------
@@ -74,11 +74,11 @@ class ShownComparison:
     other_points: NDArray[np.float32]
 
     def coloured(self, order: NDArray[np.int32], *, significant_only: bool) -> Values:
-        """Deviations of the points of these numbers, NaN where they are not significant if only such are wanted."""
+        """Select the deviations in mm of points numbered `order`, NaN where not significant if only such are wanted."""
         values = self.deviation[order]
         return np.where(self.significant[order], values, np.float32(np.nan)) if significant_only else values
 
     def coloured_mesh(self, *, significant_only: bool) -> Values:
-        """The same of the mesh."""
+        """Select the deviations in mm of the mesh, NaN where not significant if only such are wanted."""
         values = self.mesh_deviation
         return np.where(self.mesh_significant, values, np.float32(np.nan)) if significant_only else values

@@ -18,7 +18,7 @@ UNSEEN_STEPS = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownProfile:
-    """A cross-section as it is drawn: positions along it and heights, in mm.
+    """Cross-section as it is drawn: positions along it and heights, in mm.
 
     Parameters
     ----------
@@ -38,21 +38,21 @@ class ShownProfile:
 
     @classmethod
     def of(cls, position: Array, height: Array, means: tuple[Array, Array], step_mm: float, most: int) -> ShownProfile:
-        """Of points (N,), `most` of which are drawn, and their means over steps of `step_mm`."""
+        """Make the profile of points (N,), `most` of which are drawn, and of their means over steps of `step_mm`."""
         order = np.argsort(position, kind="stable")[:: max(1, -(-len(position) // most))]
         far = np.diff(means[0], prepend=means[0][:1]) > UNSEEN_STEPS * step_mm
         return cls(position[order], height[order], *means, np.cumsum(far))
 
     @property
     def mean_line(self) -> tuple[Array, Array]:
-        """Positions and heights of the mean, with NaN between its pieces, where the surface is not known."""
+        """Positions and heights in mm of the mean, with NaN between its pieces, where the surface is not known."""
         ends = np.flatnonzero(np.diff(self.mean_piece)) + 1
         return np.insert(self.mean_position, ends, np.nan), np.insert(self.mean_height, ends, np.nan)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownClass:
-    """One class of deviations: its `mark` as "++", from where to where it goes, how many places, and some of them.
+    """Class of deviations: its `mark` as "++", both ends in mm, the share of places in it, and some of them.
 
     `low_mm`, `high_mm`: −inf and inf for those beyond the tolerance. `share` of all places. `places` (M, 3) in mm.
     """
@@ -67,7 +67,7 @@ class ShownClass:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownDeviations:
-    """A comparison with a nominal surface as it is drawn.
+    """Comparison with a nominal surface as it is drawn.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class ShownDeviations:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownFeature:
-    """One feature of a plan as it was measured.
+    """Feature of a plan as it was measured.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class ShownFeature:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownInspection:
-    """A plan measured on the scan of a project.
+    """Plan measured on the scan of a project.
 
     `unmeasured`: whether a feature with limits could not be measured. `pose_camera_part` maps part coordinates into the
     camera frame, where there are any.

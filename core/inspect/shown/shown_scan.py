@@ -21,7 +21,7 @@ NO_FACE, UPPER, LOWER = 0, 1, 2
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Relief:
-    """The surface as a picture: grey levels (rows, columns) of cells of `cell_px` × `cell_px` camera pixels."""
+    """Surface as a picture: grey levels (rows, columns) of cells of `cell_px` × `cell_px` camera pixels."""
 
     picture: NDArray[np.uint8]
     cell_px: float
@@ -29,7 +29,7 @@ class Relief:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class NextPair:
-    """A pair of faces that could be meant as well as the one that was measured.
+    """Pair of faces that could be meant as well as the one that was measured.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class NextPair:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownMesh:
-    """The mesh of a scan; triangles in the order of the largest σ of their corners.
+    """Mesh of a scan; triangles in the order of the largest σ of their corners.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ class ShownMesh:
     triangle_sigma: Values
 
     def up_to(self, sigma_mm: float) -> int:
-        """How many of the first triangles have no corner with a larger σ."""
+        """Count the first triangles that have no corner with a σ in mm larger than this."""
         return int(np.searchsorted(self.triangle_sigma, np.float32(sigma_mm), side="right"))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class InspectionView:
-    """Everything the window shows of a scan and its thickness, ready to be drawn.
+    """View of a scan and its thickness, with everything the window shows, ready to be drawn.
 
     Points come in the order of their σ, so that those up to some σ are the first ones and no array need be copied.
 
@@ -161,17 +161,17 @@ class InspectionView:
         return len(self.points)
 
     def up_to(self, sigma_mm: float) -> int:
-        """How many of the first points have no larger σ."""
+        """Count the first points that have no σ in mm larger than this."""
         return int(np.searchsorted(self.sigma, np.float32(sigma_mm), side="right"))
 
     def used_up_to(self, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Indices of the points used on the upper and on the lower face, among the first `count` points."""
+        """Select the points used on the upper and on the lower face among the first `count` points; return indices."""
         if self.gauge is None:
             return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
         upper, lower = self.gauge.upper.indices, self.gauge.lower.indices
         return upper[: np.searchsorted(upper, count)], lower[: np.searchsorted(lower, count)]
 
     def frame_name(self, point: int) -> str:
-        """The frame a point was measured in; nothing for one the fan measured itself."""
+        """Return the name of the frame a point was measured in; "" for one the fan measured itself."""
         number = float(self.frame[point])
         return self.frames[int(number) - 1] if 1 <= number <= len(self.frames) else ""

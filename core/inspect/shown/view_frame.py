@@ -19,7 +19,7 @@ from core.model.arrays import Array
 
 
 class FrameKind(StrEnum):
-    """What a frame rests on."""
+    """Kind of a frame, by what it rests on."""
 
     CAMERA = "camera"
     GROUND = "ground"
@@ -38,7 +38,7 @@ FRAME_NAMES: Mapping[FrameKind, str] = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Ground:
-    """The frame the surface stands in: rows of `axes` are along (picture's right), across, and up; `origin` on it."""
+    """Frame of the surface: rows of `axes` are along (picture's right), across, and up; `origin` lies on it."""
 
     axes: Array
     origin: Array
@@ -55,38 +55,38 @@ class Ground:
         return cls(np.array([along, np.cross(up, along), up]), away * distance)
 
     def local(self, points: Array) -> Array:
-        """`points` (N, 3) of the camera frame in this one: along, across, height; mm."""
+        """Transform `points` (N, 3) in mm of the camera frame into along, across and height in this one."""
         local: Array = (points - self.origin) @ self.axes.T
         return local
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ViewFrame:
-    """A frame: `pose_camera_frame` maps its coordinates into the camera frame."""
+    """Frame in which points are viewed: `pose_camera_frame` maps its coordinates into the camera frame."""
 
     kind: FrameKind
     pose_camera_frame: Pose
 
     @property
     def axes(self) -> Array:
-        """Its x, y and z as rows (3, 3) of unit vectors in the camera frame."""
+        """Axes x, y and z as rows (3, 3) of unit vectors in the camera frame."""
         return self.pose_camera_frame.rotation.T
 
     def coordinates(self, points: ArrayLike) -> Array:
-        """`points` (N, 3) or (3,) in mm of the camera frame in this one."""
+        """Transform `points` (N, 3) or (3,) in mm of the camera frame into this one."""
         if self.kind is FrameKind.CAMERA:
             return np.asarray(points, dtype=np.float64)  # to the bit
         return self.pose_camera_frame.inverse().apply(points)
 
     def directions(self, vectors: Array) -> Array:
-        """`vectors` (N, 3) of the camera frame in this one; a length of 0 stays."""
+        """Transform `vectors` (N, 3) of the camera frame into this one; a length of 0 stays."""
         if self.kind is FrameKind.CAMERA:
             return vectors
         turned: Array = vectors @ self.pose_camera_frame.rotation
         return turned
 
     def same_as(self, other: ViewFrame) -> bool:
-        """Whether it is the same one."""
+        """Whether another frame has the same kind and pose."""
         ours, theirs = self.pose_camera_frame, other.pose_camera_frame
         return (
             self.kind is other.kind
@@ -95,7 +95,7 @@ class ViewFrame:
         )
 
     def turned(self, about: int, degrees: float) -> ViewFrame:
-        """The same place with its axes turned about its own axis number `about`, by the right-hand rule."""
+        """Turn the axes about axis number `about` by so many degrees, by the right-hand rule; the place stays."""
         angle, turn = np.radians(degrees), np.eye(3)
         first, second = (about + 1) % 3, (about + 2) % 3
         turn[first, first] = turn[second, second] = np.cos(angle)
@@ -108,12 +108,12 @@ CAMERA_FRAME = ViewFrame(FrameKind.CAMERA, Pose.identity())
 
 
 def shown_frame(part: ViewFrame | None, *, wanted: bool) -> ViewFrame:
-    """The part's own frame where it is known and wanted, else the camera's."""
+    """Choose the part's own frame where it is known and wanted, else the camera's."""
     return part if part is not None and wanted else CAMERA_FRAME
 
 
 def part_frame(pose_camera_part: Pose | None, lower: LightPlane | None) -> ViewFrame | None:
-    """The part's own frame: its part coordinates, else that of its lower face, else none.
+    """Choose the part's own frame: its part coordinates, else that of its lower face, else none.
 
     Parameters
     ----------
