@@ -9,7 +9,7 @@ from core.messages import Message, plain
 
 
 class Cause(Enum):
-    """Every cause the program knows. What is done with a row of a budget is decided by it, not by its words."""
+    """Cause of uncertainty that the program has a name for; what is done with a row of a budget is decided by it."""
 
     POINT_NOISE = Message("inspection.cause_point_noise", "noise, hand laser")
     SWEEP_PLANES = Message("inspection.cause_sweep_planes", "position, hand laser")
@@ -72,7 +72,7 @@ class Cause(Enum):
 
     @property
     def message(self) -> Message:
-        """The same in words."""
+        """Name of the cause in words."""
         return self.value
 
     def __str__(self) -> str:
@@ -84,7 +84,7 @@ Source = Cause | Message
 
 
 def message_of(source: Source) -> Message:
-    """A source in words."""
+    """Return the name of a source in words."""
     return source.message if isinstance(source, Cause) else source
 
 
@@ -128,7 +128,7 @@ def known_cause(kept: Message) -> Source:
 
 
 def cause_named(text: str) -> Source:
-    """The cause that is called so in English, as in plans, which people write; else the text as it is.
+    """Find the cause with this English name, as in plans, which people write; else return the text as it is.
 
     Examples
     --------

@@ -17,7 +17,7 @@ Quantity: TypeAlias = Literal["length", "angle"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Characteristic:
-    """What was measured, how sure it is, and what that proves.
+    """Measured characteristic of a part, with its uncertainty and its limits.
 
     Parameters
     ----------
@@ -73,12 +73,12 @@ class Characteristic:
 
     @property
     def U(self) -> float:
-        """Expanded uncertainty."""
+        """Expanded uncertainty U = k u, in the value's unit."""
         return self.k * self.u
 
     @property
     def deviation(self) -> float | None:
-        """Measured − nominal, or None without limits."""
+        """Measured − nominal, in the value's unit, or None without limits."""
         return None if self.limits is None else self.value - self.limits.nominal
 
     @property
@@ -88,7 +88,7 @@ class Characteristic:
 
     @property
     def room(self) -> float:
-        """How far the deviation, enlarged by U, stays from the nearest limit, as a share of half of what is permitted.
+        """Distance of the deviation, enlarged by U, from the nearest limit, as a share of half of what is permitted.
 
         Below 0 where a limit may be exceeded; infinite without limits, −inf where nothing is known.
         """
@@ -103,7 +103,7 @@ class Characteristic:
 
 
 def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
-    """A thickness as a characteristic among others."""
+    """Make the characteristic of a measured thickness."""
     return Characteristic(
         name="thickness",
         kind="thickness",

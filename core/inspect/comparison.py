@@ -98,7 +98,7 @@ class SurfacePoints:
 
     @classmethod
     def of_cloud(cls, cloud: Cloud) -> SurfacePoints:
-        """A scan; an error of depth counts as far as it lies across the surface."""
+        """Take the points of a scan; an error of depth counts as far as it lies across the surface."""
         known = cloud.normals.any(axis=1)
         across = np.abs((cloud.normals * cloud.points).sum(axis=1)) / np.linalg.norm(cloud.points, axis=1)
         share = np.where(known, across, 1.0)
@@ -107,7 +107,7 @@ class SurfacePoints:
 
     @classmethod
     def bare(cls, points: Array, normals: Array | None = None, sigma: Array | None = None) -> SurfacePoints:
-        """Points of another program: each errs by itself, by what their scatter shows or `sigma` says."""
+        """Make points of another program: each errs by itself, by what their scatter shows or `sigma` in mm."""
         zero = np.zeros(len(points))
         return cls(
             points,
@@ -118,22 +118,22 @@ class SurfacePoints:
         )
 
     def select(self, keep: NDArray[np.int64] | NDArray[np.bool_]) -> SurfacePoints:
-        """The points that `keep` selects."""
+        """Select the points by indices or flags `keep`."""
         return SurfacePoints(
             self.points[keep], self.normals[keep], self.sigma[keep], self.sweep[keep], self.common[keep]
         )
 
     def moved(self, pose: Pose) -> SurfacePoints:
-        """The same in another frame."""
+        """Transform the points and their normals into another frame."""
         return replace(self, points=pose.apply(self.points), normals=self.normals @ pose.rotation.T)
 
     def without_common(self) -> SurfacePoints:
-        """The same where what all points share cancels, or an alignment takes it."""
+        """Set the common uncertainty to 0, where it cancels or an alignment takes it."""
         return replace(self, common=np.zeros(len(self)))
 
 
 def sampled_surface(surface: Triangles, spacing_mm: float, most: int = 1_000_000) -> SurfacePoints:
-    """Places on triangles, evenly by area, about `spacing_mm` apart; at most `most`. They are exact."""
+    """Sample places on triangles, evenly by area, about `spacing_mm` apart; at most `most`. They are exact."""
     corners = surface.corners
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     count = int(np.clip(area.sum() / spacing_mm**2, min(1000, most), most))
@@ -146,7 +146,7 @@ def sampled_surface(surface: Triangles, spacing_mm: float, most: int = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class ComparisonScales:
-    """How surfaces are compared.
+    """Scales that surfaces are compared at, in mm.
 
     Parameters
     ----------
@@ -195,27 +195,27 @@ class Comparison:
 
     @property
     def sigma(self) -> Array:
-        """(N,) standard uncertainty of the deviation in mm, the registration's included."""
+        """Standard uncertainty (N,) of the deviation in mm, the registration's included."""
         return np.hypot(self.u, self.registration_mm)
 
     @property
     def detectable(self) -> Array:
-        """(N,) the level of detection in mm at 95 %."""
+        """Level of detection (N,) of a deviation in mm at 95 %."""
         return np.asarray(DETECTED * self.sigma)
 
     @property
     def significant(self) -> NDArray[np.bool_]:
-        """(N,) whether the deviation is beyond it."""
+        """Whether (N,) the deviation is beyond the level of detection."""
         return np.asarray(np.abs(self.deviation) > self.detectable)
 
     @property
     def lower(self) -> Changed:
-        """Where material is missing, significantly."""
+        """Share and deviations in mm of places where material is missing, significantly."""
         return self._changed(-1)
 
     @property
     def higher(self) -> Changed:
-        """Where there is more, significantly."""
+        """Share and deviations in mm of places where there is more material, significantly."""
         return self._changed(1)
 
     def _changed(self, side: int) -> Changed:
@@ -225,7 +225,7 @@ class Comparison:
         return Changed(len(there) / len(self), float(there.mean()), float(there[np.argmax(side * there)]))
 
     def at(self, points: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Deviation (M,) in mm at points (M, 3) of the surface, NaN where none is near, and whether it is significant.
+        """Look up the deviation (M,) in mm at points (M, 3) of the surface, NaN where none is near, and if significant.
 
         That of the nearest core point within a diameter.
         """

@@ -11,7 +11,7 @@ from core.findings.proof import Doubts
 
 
 class Verdict(StrEnum):
-    """What a measurement proves about a tolerance; its values stand in files."""
+    """Verdict of a measurement about a tolerance; its values are stored in files."""
 
     CONFORMING = "conforming"
     NOT_CONFORMING = "not conforming"
@@ -21,7 +21,7 @@ class Verdict(StrEnum):
 
     @classmethod
     def worst(cls, verdicts: Iterable[Verdict]) -> Verdict:
-        """Of several on one part: what does not conform, then what is not proven; NONE where nothing is asked."""
+        """Choose the worst of several on one part: does not conform, then not proven; NONE where nothing is asked."""
         found = set(verdicts)
         return next((one for one in WORST_FIRST if one in found), cls.NONE)
 
@@ -31,7 +31,7 @@ WORST_FIRST = (Verdict.NOT_CONFORMING, Verdict.NOT_PROVEN, Verdict.CONFORMING)
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The requirement on a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
+    """Requirement on a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
 
     Values in mm or rad; −inf or inf where a side has no limit. A deviation of form has the nominal value 0, no lower
     limit and its tolerance as the upper one: it cannot be too small.
@@ -52,12 +52,12 @@ class Limits:
 
     @classmethod
     def around(cls, nominal: float | None, tolerance: float | None) -> Limits | None:
-        """Nominal ± tolerance; None unless both are given."""
+        """Make the limits nominal ± tolerance; None unless both are given."""
         return None if nominal is None or tolerance is None else cls(nominal, -tolerance, tolerance)
 
 
 def decide(value: float, limits: Limits | None, U: float, doubts: Doubts, *, r: float = 1.0) -> Verdict:
-    """Conformity with limits by ISO 14253-1, for the maker of a part: the only place where a verdict is made.
+    """Decide on conformity with limits by ISO 14253-1, for the maker of a part: the only place where a verdict is made.
 
     The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
     nonconformity; between the two nothing is proven. Nor is anything by a value or an uncertainty that is not known.
@@ -108,7 +108,7 @@ def decide(value: float, limits: Limits | None, U: float, doubts: Doubts, *, r: 
 
 @dataclass(frozen=True, slots=True)
 class Zones:
-    """The zones of a decision: where a measured deviation proves conformity, nonconformity, or nothing.
+    """Zones of a decision: where a measured deviation proves conformity, nonconformity, or nothing.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class Zones:
 
     @property
     def guard_band(self) -> float:
-        """g, to both sides of each limit."""
+        """Width g = r·U of the guard band to both sides of each limit."""
         return self.r * self.U
 
     @property
@@ -158,12 +158,12 @@ class Zones:
 
     @property
     def nonconformance(self) -> tuple[float, float]:
-        """Values below the first or above the second prove nonconformity."""
+        """Two values: below the first or above the second nonconformity is proven."""
         return self.lower - self.guard_band, self.upper + self.guard_band
 
     @property
     def uncertainty(self) -> tuple[tuple[float, float], ...]:
-        """The zones in which nothing is proven: about each limit there is, or all at once where they meet."""
+        """Zones in which nothing is proven: about each limit there is, or all at once where they meet."""
         low, high = self.nonconformance
         if self.conformance is None:
             return ((low, high),)

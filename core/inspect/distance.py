@@ -13,14 +13,14 @@ from core.model.arrays import Array, frozen_array
 
 @dataclass(frozen=True, slots=True)
 class PointDistance:
-    """A distance and its standard uncertainty, in mm."""
+    """Distance of two points and its standard uncertainty, in mm."""
 
     distance_mm: float
     u_mm: float
 
 
 def point_distance(a: ArrayLike, b: ArrayLike, sigma_a: float, sigma_b: float) -> PointDistance:
-    """The distance of two points of a cloud, and what the noise of the two makes of it.
+    """Compute the distance in mm of two points of a cloud, and its uncertainty by the noise of the two.
 
     A point of depth uncertainty σ moves along its ray r = X / z, so along the unit vector n between the two points it
     moves by σ n·r. The two are taken as independent: u² = (σ_a n·r_a)² + (σ_b n·r_b)².

@@ -40,7 +40,7 @@ from core.scan.surface.triangles import Triangles
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Inspection:
-    """What a plan gave on one scan.
+    """Results of a plan on one scan.
 
     Parameters
     ----------
@@ -67,16 +67,16 @@ class Inspection:
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Of all features, in their order."""
+        """Characteristics of all features, in their order."""
         return tuple(row for result in self.results for row in result.characteristics)
 
     @property
     def problems(self) -> tuple[Message, ...]:
-        """Why each feature that could not be measured was not."""
+        """Reasons why features could not be measured."""
         return tuple(result.problem for result in self.results if result.problem)
 
     def result(self, name: str) -> FeatureResult:
-        """Of the feature called so; KeyError if there is none."""
+        """Find the result of the feature called `name`; KeyError if there is none."""
         return {result.spec.name: result for result in self.results}[name]
 
     @property
@@ -86,7 +86,7 @@ class Inspection:
 
     @property
     def verdict(self) -> Verdict:
-        """Of the plan alone: that on the part holds a thickness measured beside it as well."""
+        """Verdict of the plan alone: that on the part holds a thickness measured beside it as well."""
         return ResultList(None, self.characteristics, self.unmeasured).verdict
 
 

@@ -40,7 +40,7 @@ _REGION_FIELDS = {
 
 
 def region_field(face: str) -> Message:
-    """Where the region of a face stands in rig.toml; a window names it as a region of the picture."""
+    """Return the field of rig.toml with the region of a face; a window names it as a region of the picture."""
     return _REGION_FIELDS[face]
 
 
@@ -61,7 +61,7 @@ LIKE_SIZE = 0.25
 
 
 class OneFace(OwnCause):
-    """Only one face is in view: the fan's own points of the cloud lie on no other."""
+    """Error that only one face is in view: the fan's own points of the cloud lie on no other."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -84,7 +84,7 @@ def find_faces(
     seed: int = 0,
     progress: Progress = silent,
 ) -> FacePair:
-    """The points of the two largest parallel faces, or, of several pairs of like size, of that nearest to a nominal.
+    """Find the two largest parallel faces, or, of several pairs of like size, the pair nearest to a nominal thickness.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def faces_in_polygons(
     *,
     margin_mm: float = 1.5,
 ) -> FacePair:
-    """The points of the largest plane inside each of two polygons (n ≥ 3, 2) in pixels of the picture.
+    """Find the largest plane inside each of two polygons (n ≥ 3, 2) in pixels of the picture.
 
     A polygon may reach over the edge of its face: the margin is taken from the face's own edge, not from the polygon's.
 
@@ -269,7 +269,7 @@ def faces_in_polygons(
 
 
 def face_inside(cloud: Cloud, inside: NDArray[np.bool_], *, margin_mm: float = 1.5) -> NDArray[np.int64]:
-    """Indices of the points of the largest plane among the points `inside`, less the margin of the whole face."""
+    """Find the largest plane among the points `inside` (N,); return its indices, less the margin of the whole face."""
     part = cloud.select(inside)
     tolerance = search_tolerance(part)
     plane = largest_plane(part, tolerance, 0.0, seed=0)

@@ -34,7 +34,7 @@ def free_faces(
     *,
     tilt_determined: bool,
 ) -> tuple[Face, Face]:
-    """The upper and the lower face of a `pair` in a cloud, each fitted freely.
+    """Fit the upper and the lower face of a `pair` in a cloud, each freely.
 
     Points that do not span a face leave open how it lies: it is that of the `joint` fit then, without flatness, which
     is asked for only then, or where it is not `tilt_determined`. Both are fitted at once; a StageTimes learns what that
@@ -54,7 +54,7 @@ def free_faces(
 
 
 def angle_of(upper: Face, lower: Face) -> float | None:
-    """Angle in rad between two faces; None if one of them does not tell how it lies."""
+    """Compute the angle in rad between two faces, 0 to π/2; None if one of them is not spanned by its points."""
     if not (upper.spanned and lower.spanned):
         return None
     cross = np.linalg.norm(np.cross(upper.plane.normal, lower.plane.normal))

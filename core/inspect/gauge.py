@@ -52,7 +52,7 @@ RULE_LINE = Message(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GaugeFit:
-    """The two faces and the planes fitted to them.
+    """Fit of two parallel planes to the two faces of a part.
 
     `faces` is the joint fit, over `pair.upper` and `pair.lower` (indices into the cloud); `robust` the same planes
     fitted as if points were independent; `upper` and `lower` are each fitted freely, `parallelism` (rad) is the angle
@@ -71,12 +71,12 @@ class GaugeFit:
 
     @property
     def planes(self) -> ParallelPlaneFit:
-        """The joint fit's planes."""
+        """Planes of the joint fit."""
         return self.faces.planes
 
     @property
     def thickness_mm(self) -> float:
-        """Distance of the two parallel planes."""
+        """Distance between the two parallel planes, in mm."""
         return self.planes.thickness
 
 
@@ -154,7 +154,7 @@ def measure_gauge(
     k: float = 2.0,
     progress: Progress = silent,
 ) -> GaugeResult:
-    """Thickness with uncertainty and verdict.
+    """Measure the thickness, with uncertainty and verdict.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _notes_on_form(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, error
 
 
 def doubted(gauge: GaugeResult, doubts: Doubts) -> GaugeResult:
-    """The same thickness, which by these `doubts`, if there are any, proves nothing; its notes tell of them first."""
+    """Set the doubts by which the thickness, if there are any, proves nothing, and put the notes on them first."""
     return replace(gauge, notes=(*notes_of(doubts), *gauge.notes), doubts=doubts)
 
 
@@ -248,7 +248,7 @@ def adjusted(
     *,
     k: float = 2.0,
 ) -> GaugeResult:
-    """The thickness with a correction added, and further rows in its budget.
+    """Add a correction in mm to the thickness, and further rows to its budget.
 
     `k` is the coverage factor where u is known.
     """

@@ -23,7 +23,7 @@ LONGEST_GAP = 10.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Outline:
-    """Corners (n, 3) of a plane face, once round."""
+    """Outline of a plane face: corners (n, 3) in mm, once round."""
 
     name: str
     corners: Array
@@ -31,7 +31,7 @@ class Outline:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SphereShape:
-    """A sphere: its centre (3,) and radius."""
+    """Sphere: its centre (3,) and radius, in mm."""
 
     name: str
     centre: Array
@@ -40,7 +40,7 @@ class SphereShape:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CylinderShape:
-    """A cylinder as far as it was measured: both ends (2, 3) of its axis, and its radius."""
+    """Cylinder as far as it was measured: both ends (2, 3) of its axis, and its radius, in mm."""
 
     name: str
     ends: Array
@@ -49,7 +49,7 @@ class CylinderShape:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Curve:
-    """One piece of a section: places (n, 3), n ≥ 2, along it."""
+    """Piece of a section: places (n, 3) in mm, n ≥ 2, along it."""
 
     name: str
     places: Array
@@ -60,7 +60,7 @@ Shape: TypeAlias = Outline | SphereShape | CylinderShape | Curve
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Geometry:
-    """All that can be drawn, in coordinates of a `frame` of that kind."""
+    """Shapes to be drawn, in coordinates of a `frame` of that kind."""
 
     drawn: tuple[Shape, ...]
     frame: FrameKind
@@ -83,13 +83,13 @@ def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Ou
 
 
 def cylinder(name: str, centre: Array, direction: Array, radius: float, points: Array) -> CylinderShape:
-    """A cylinder from the first to the last of its points (n, 3), n ≥ 1, along the axis."""
+    """Make a cylinder from the first to the last of its points (n, 3), n ≥ 1, along the axis."""
     along = (points - centre) @ direction
     return CylinderShape(name, centre + np.outer([along.min(), along.max()], direction), radius)
 
 
 def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float) -> list[Curve]:
-    """Pieces of a section's mean curve: `profile` (n, 2) is position and height along the two `axes` (2, 3)."""
+    """Compute pieces of a section's mean curve: `profile` (n, 2) is position and height along the two `axes` (2, 3)."""
     position, height = averaged(profile[:, 0], profile[:, 1], step_mm)
     ends = np.flatnonzero(np.diff(position) > LONGEST_GAP * step_mm) + 1
     places = origin + np.column_stack([position, height]) @ axes
@@ -97,7 +97,7 @@ def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float
 
 
 def moved(drawn: Sequence[Shape], pose: Pose) -> list[Shape]:
-    """The same after a motion."""
+    """Move shapes by a pose."""
     made: list[Shape] = []
     for one in drawn:
         match one:

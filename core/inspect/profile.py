@@ -26,7 +26,7 @@ FEWEST_MEANS = 4
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Profile:
-    """The points of a cloud near a plane, laid out in it.
+    """Points of a cloud near a plane, laid out in it.
 
     Parameters
     ----------
@@ -56,16 +56,16 @@ class Profile:
 
     @property
     def normal(self) -> Array:
-        """(3,) unit normal of the section's plane."""
+        """Unit normal (3,) of the section's plane."""
         return np.asarray(np.cross(self.along, self.up))
 
     def between(self, ends: tuple[float, float]) -> NDArray[np.int64]:
-        """Which of its points (numbers into `indices`) lie between two positions in mm."""
+        """Select the points between two positions in mm; return numbers into `indices`."""
         return np.flatnonzero((self.position >= min(ends)) & (self.position <= max(ends)))
 
 
 def averaged(position: Array, height: Array, step_mm: float) -> tuple[Array, Array]:
-    """Medians of the heights over steps along a profile, and the mean positions; empty steps are left out."""
+    """Compute the medians of heights over steps along a profile, and the mean positions; empty steps are left out."""
     if not len(position):
         return np.zeros(0), np.zeros(0)
     step = np.floor((position - position.min()) / step_mm).astype(np.int64)
@@ -77,7 +77,7 @@ def averaged(position: Array, height: Array, step_mm: float) -> tuple[Array, Arr
 
 
 def usual_stretches(position: Array, height: Array) -> tuple[Stretch, Stretch]:
-    """Two stretches, from and to in mm, of a profile averaged over steps: the lower one first.
+    """Choose two stretches, from and to in mm, of a profile averaged over steps: the lower one first.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ LEVEL_SIGMAS, LEVEL_MM = 5.0, 0.1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Stretch:
-    """A straight piece of one line's profile, less its margins.
+    """Straight piece of one line's profile, less its margins.
 
     `line` from 0; `indices` (N,) into the cloud, in order along it; `centre` (3,) in mm, `along` (3,) unit direction,
     `length_mm`.
@@ -144,7 +144,7 @@ def _common_normal(levels: _TwoLevels) -> Array:
 
 
 def level_limit(cloud: Cloud) -> float:
-    """Heights in mm that differ by less are of one level."""
+    """Compute the difference of heights in mm below which they are of one level."""
     return _limit(cloud, LEVEL_SIGMAS, LEVEL_MM)
 
 

@@ -12,7 +12,7 @@ from core.inspect.results import GaugeResult
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ResultList:
-    """Every result on one part.
+    """List of the results on one part.
 
     Parameters
     ----------
@@ -32,22 +32,22 @@ class ResultList:
     def of(
         cls, gauge: GaugeResult | None, inspected: Iterable[Characteristic] = (), *, unmeasured: bool = False
     ) -> ResultList:
-        """The same of a thickness as it was measured."""
+        """Make the list from a measured thickness and the results of a plan."""
         return cls(None if gauge is None else thickness_characteristic(gauge), tuple(inspected), unmeasured)
 
     @property
     def rows(self) -> tuple[Characteristic, ...]:
-        """All of them, the gauge's thickness first."""
+        """All results, the gauge's thickness first."""
         return self.inspected if self.thickness is None else (self.thickness, *self.inspected)
 
     @property
     def worst_first(self) -> tuple[Characteristic, ...]:
-        """The same by their verdicts, and those of one verdict by the room that is left to their limits."""
+        """Results by their verdicts, worst first, and those of one verdict by the room that is left to their limits."""
         order = (*WORST_FIRST, Verdict.NONE)
         return tuple(sorted(self.rows, key=lambda one: (order.index(one.verdict), one.room)))
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict on the part: the worst of all rows, and at best "not proven" where something is unmeasured."""
+        """Verdict on the part: the worst of all rows, and at best "not proven" where something is unmeasured."""
         missing = (Verdict.NOT_PROVEN,) if self.unmeasured else ()
         return Verdict.worst((*(one.verdict for one in self.rows), *missing))

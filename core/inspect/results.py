@@ -18,7 +18,7 @@ from core.model.arrays import Array
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Face:
-    """One face of a part: a robustly fitted plane and the points of the cloud it rests on.
+    """Face of a part: a robustly fitted plane and the points of the cloud it rests on.
 
     `plane` is the face's own plane, fitted freely. `indices` into the cloud, without the points the fit left out;
     `residuals` (mm) of these points from the plane, along its normal, towards the camera positive. `flatness_mm` is
@@ -38,7 +38,7 @@ class Face:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Contribution:
-    """One row of an uncertainty budget: what it comes from and how much it contributes to the result's uncertainty.
+    """Row of an uncertainty budget: its source and its contribution to the result's uncertainty.
 
     Parameters
     ----------
@@ -69,12 +69,12 @@ class Contribution:
 
     @property
     def words(self) -> Message:
-        """What it comes from, in words."""
+        """Name of the source, in words."""
         return message_of(self.source)
 
     @property
     def sensitivity(self) -> float | None:
-        """How much of the input's standard uncertainty arrives in the result: |c|, in the result's unit per `unit`."""
+        """Sensitivity |c| of the result to the input, in the result's unit per `unit`; None where it is not known."""
         return self.u_mm / self.point_mm if self.point_mm else None
 
 
@@ -84,7 +84,7 @@ Corners = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class PairCandidate:
-    """A pair of parallel faces that could be the ones meant.
+    """Pair of parallel faces that could be the ones meant.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class PairCandidate:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class GaugeResult:
-    """The thickness of a gauge block: distance of two parallel faces.
+    """Thickness of a gauge block: distance of two parallel faces.
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
     the faces when each is fitted freely, None where a face is not spanned by its points. `rule` says what the thickness
@@ -146,7 +146,7 @@ class GaugeResult:
 
     @property
     def points_used(self) -> tuple[int, int]:
-        """Points on the upper and on the lower face."""
+        """Numbers of points on the upper and on the lower face."""
         return len(self.upper.indices), len(self.lower.indices)
 
     @property
@@ -156,7 +156,7 @@ class GaugeResult:
 
     @property
     def limits(self) -> Limits | None:
-        """Nominal value ± tolerance; None unless both are given."""
+        """Nominal value ± tolerance as limits; None unless both are given."""
         return Limits.around(self.nominal_mm, self.tolerance_mm)
 
     @property
@@ -166,5 +166,5 @@ class GaugeResult:
 
     @property
     def deviation_mm(self) -> float | None:
-        """Measured − nominal, or None without a nominal value."""
+        """Measured − nominal in mm, or None without a nominal value."""
         return None if self.nominal_mm is None else self.thickness_mm - self.nominal_mm

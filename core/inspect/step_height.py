@@ -56,7 +56,7 @@ _LEAST_SIGMA_MM = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class KnownTilt:
-    """What is known of the faces where one line does not show it.
+    """Tilt of the faces, used where one line does not show it.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class KnownTilt:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Step:
-    """The thickness that one picture gives.
+    """Thickness that one picture gives.
 
     `pair` counts in that picture's `cloud`; `effects` are what makes it uncertain, `by_tilt_mm` what the tilt of its
     faces does, as far as that was taken from elsewhere; `errors` are those of its points.
@@ -89,17 +89,17 @@ class Step:
 
     @property
     def thickness_mm(self) -> float:
-        """Distance of the two planes."""
+        """Distance between the two planes, in mm."""
         return self.faces.planes.thickness
 
     @property
     def own_mm(self) -> float:
-        """Standard uncertainty that is this picture's own: noise and form."""
+        """Standard uncertainty in mm that is this picture's own: noise and form."""
         return float(math.hypot(*(float(np.linalg.norm(one.factor)) for one in self.effects if not one.shared)))
 
 
 def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) -> Step | Message:
-    """Measure the step in one picture, or say why there is none.
+    """Measure the step in one picture; return a message that says why if there is none.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
 
 
 def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
-    """Unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
+    """Compute unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
     points = cloud.points - cloud.points.mean(axis=0)
     flat = points - np.outer(points @ step_normal, step_normal)
     along = np.linalg.svd(flat, full_matrices=False)[2][0]
@@ -210,7 +210,7 @@ def measure_steps(
     tolerance_mm: float | None = None,
     k: float = 2.0,
 ) -> GaugeResult:
-    """The thickness of all pictures together, with its uncertainty and verdict.
+    """Combine the thickness of all pictures, with its uncertainty and verdict.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class Ground:
 
     @classmethod
     def of(cls, plane: LightPlane | None, points: Array) -> Ground:
-        """Up is out of `plane`, towards the camera; without one, up is towards the camera from the farthest points."""
+        """Make the frame with up out of `plane`, towards the camera; without one, up from the farthest points to it."""
         away = np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
         along = np.array([1.0, 0.0, 0.0]) - away[0] * away
         along /= np.linalg.norm(along)
