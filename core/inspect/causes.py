@@ -123,7 +123,7 @@ _KNOWN = {str(one): one for one in Cause} | {one.message.code: one for one in Ca
 
 
 def known_cause(kept: Message) -> Source:
-    """The cause that a file names by its code, or by its English words as older files do; others as they are."""
+    """Find the cause that a file names by its code, or in English as older files do; return others as they are."""
     return _KNOWN.get(kept.code or str(kept), kept)
 
 

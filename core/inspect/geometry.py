@@ -67,7 +67,7 @@ class Geometry:
 
 
 def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Outline]:
-    """Of parallel planes square to `normal` (3,) through `centres` (c, 3): each point (n, 3) belongs to the nearest."""
+    """Compute outlines of planes square to `normal` (3,) through `centres` (c, 3) by the points (n, 3) nearest each."""
     away = np.abs((points[:, None] - centres[None]) @ normal)
     nearest = np.argmin(away, axis=1)
     across = np.linalg.svd(normal[None])[2][1:]

@@ -28,7 +28,7 @@ PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlanResult:
-    """What a plan will give: one prediction for each height, and what changes do to that of the largest height.
+    """Result of a plan: one prediction for each height, and effects of changes on that of the largest height.
 
     `advice` is empty when no changes were tried, `bounds` when they were not asked for; `not_foretold` says what U has
     besides in a scan.
@@ -43,7 +43,7 @@ class PlanResult:
 
     @property
     def largest(self) -> Prediction:
-        """The prediction that changes are judged by."""
+        """Prediction of the largest height, by which changes are judged."""
         return max(self.predictions, key=lambda prediction: prediction.height_mm)
 
 
@@ -107,7 +107,7 @@ def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
 
 
 def plan_values(result: PlanResult) -> dict[str, Any]:
-    """The plan and its figures for machines; lengths in mm, angles in degrees as rig.toml has them."""
+    """Make the values of a plan for machines; lengths in mm, angles in degrees as rig.toml has them."""
     return {
         "version": __version__,
         "design": {name: value for name, value in asdict(result.design).items() if not name.endswith("_target")},

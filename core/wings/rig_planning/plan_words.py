@@ -11,7 +11,7 @@ from core.wings.rig_planning.prediction.predict import Prediction
 
 
 def plan_rows(result: PlanResult, words: Words) -> list[tuple[str, str]]:
-    """Name and value of each thing that a plan foretells, in a language."""
+    """Make a row, name and value in a language, of each thing that a plan predicts."""
     rows: list[tuple[str, str]] = []
     for prediction in result.predictions:
         said = words("U = {U:.3f} mm (k = {k:g})", U=prediction.U_mm, k=prediction.k)

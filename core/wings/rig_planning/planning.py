@@ -26,7 +26,7 @@ def run_plan(
     bounds: bool = False,
     progress: Progress,
 ) -> Shown:
-    """Predict, write what is asked for, and return what to say."""
+    """Predict, write the files requested, and return the lines to print."""
     if scans < 1:
         raise InputError(
             Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=scans),

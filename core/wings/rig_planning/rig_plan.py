@@ -34,7 +34,7 @@ PLANNED_RIG = "planned-rig.toml"
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ForetoldRig:
-    """A plan to be shown.
+    """Prediction of a rig, to be shown.
 
     Parameters
     ----------

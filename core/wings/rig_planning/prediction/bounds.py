@@ -47,7 +47,7 @@ BALL_MM = 50.0
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The least standard uncertainty of a `quantity`, in `unit`: of pictures `without` speckle, and `with_speckle`."""
+    """Least standard uncertainty of a `quantity`, in `unit`: of pictures `without` speckle, and `with_speckle`."""
 
     quantity: Message
     unit: str
@@ -72,7 +72,7 @@ def bounds_of(
     stability: Stability = STABLE,
     progress: Progress = silent,
 ) -> tuple[Bound, ...]:
-    """The bounds of a `design` for blocks of `heights_mm` (None: those of the design) and a ball, in one table.
+    """Compute the bounds of a `design` for blocks of `heights_mm` (None: those of the design) and a ball, in one table.
 
     Of a rig that may change between calibration and scan (`stability`) those of a thickness with and without a check.
 

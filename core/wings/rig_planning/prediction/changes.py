@@ -18,7 +18,7 @@ WORTHWHILE_SHARE = 0.97
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One step: its name, what it makes of the quantity, and how."""
+    """Change of one quantity: its name, the new value in words, and the function that makes it."""
 
     name: Message
     to: Callable[[Design], Message]
@@ -27,7 +27,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What a change does to U of the thickness, in mm; `reason` says why it cannot be made, and then `U_mm` is None."""
+    """Effect of a change on U of the thickness, in mm; `reason` says why it cannot be made, and then `U_mm` is None."""
 
     change: Message
     to: Message
@@ -37,7 +37,7 @@ class Effect:
 
     @property
     def share(self) -> float:
-        """U after the change over U before; infinite where the change cannot be made."""
+        """Ratio of U after the change to U before; infinite where the change cannot be made."""
         return float("inf") if self.U_mm is None else self.U_mm / self.before_mm
 
 
@@ -114,7 +114,7 @@ def compare(
     changes: tuple[Change, ...] = CHANGES,
     progress: Progress = silent,
 ) -> tuple[Effect, ...]:
-    """What each of `changes` does to U of `base`, the most helpful first.
+    """Predict the effect of each of `changes` on U of `base`, the most helpful first.
 
     Plan and change are compared on the same `scans` first scans of the plan, so that luck does not decide.
     """
@@ -131,7 +131,7 @@ def compare(
 
 
 def advice(effects: tuple[Effect, ...]) -> Message:
-    """The change that helps most, in one sentence."""
+    """Make the sentence on the change that helps most, or that none does."""
     best = effects[0] if effects else None
     if best is None or best.U_mm is None or best.share > WORTHWHILE_SHARE:
         return Message(

@@ -83,12 +83,12 @@ RANGES: Mapping[str, Range] = {
 
 
 class PlanError(InputError):
-    """A planned rig cannot be, or cannot measure: what is said of it is said in the words of a plan."""
+    """Error of a planned rig that cannot be, or cannot measure, in the words of a plan."""
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """A planned rig; the defaults are the paper's.
+    """Planned rig; the defaults are the paper's.
 
     Parameters
     ----------
@@ -197,14 +197,14 @@ class Design:
 
     @property
     def work_point(self) -> Array:
-        """Where (3,) in mm the fan's middle line passes before the camera, a little above the table."""
+        """Point (3,) in mm where the fan's middle line passes before the camera, a little above the table."""
         depth = self.distance_mm - _UNDER_FAN_MM * self.distance_mm / TABLE_DEPTH_MM
         middle = pencil_fan().planes[1].pi
         paper = (1 - middle[2] * WORK_POINT[2]) / middle[1]
         return np.array([0.0, paper * depth / WORK_POINT[2], depth])
 
     def camera(self) -> Camera:
-        """The paper's camera with this sensor and focal length: its distortion, its skew, its centre."""
+        """Make the paper's camera with this sensor and focal length: its distortion, its skew, its centre."""
         width, height = self.pixels
         matrix = np.array(FULL_MATRIX) * (self.focal_px / _PAPER_FOCAL)
         matrix[:2, 2] = [
@@ -215,7 +215,7 @@ class Design:
         return Camera((width, height), matrix, np.array(DISTORTION))
 
     def fan(self) -> Fan:
-        """A pencil about an axis at the baseline, its middle plane through the work point."""
+        """Make a pencil about an axis at the baseline, its middle plane through the work point."""
         point = self._axis_point()
         middle = np.cross(self.work_point - point, _AXIS_DIRECTION)
         middle /= np.linalg.norm(middle)
@@ -233,7 +233,7 @@ class Design:
         return Fan(tuple(LightPlane(normal / (normal @ point)) for normal in normals))
 
     def rig(self) -> Rig:
-        """Camera, fan and lasers for the twin."""
+        """Make camera, fan and lasers for the twin."""
         optics = replace(
             Optics(),
             speckle_contrast=self.speckle,
@@ -247,22 +247,22 @@ class Design:
         return Rig(self.camera(), self.fan(), emitter, scale, optics, beam, hand)
 
     def scene(self, height_mm: float) -> Scene:
-        """A block of this height on the table, under the fan, as the twin stands it there."""
+        """Make a scene with a block of this height in mm on the table, under the fan, as the twin stands it there."""
         block = turned(gauge_block(height_mm, self.block_mm), np.radians(YAW_DEG))
         return Scene.on_table(self.table(), block)
 
     def ball(self, diameter_mm: float) -> Scene:
-        """A ball of this diameter on the table, where the twin lays it."""
+        """Make a scene with a ball of this diameter in mm on the table, where the twin lays it."""
         radius = diameter_mm / 2
         return Scene.on_table(self.table(), Sphere(np.array([0.0, BALL_AWAY_MM, radius]), radius))
 
     def table(self) -> Pose:
-        """Pose of the table, tilted as the twin's."""
+        """Compute the pose of the table, tilted as the twin's."""
         across = WORK_POINT[1] * self.distance_mm / TABLE_DEPTH_MM
         return Pose(table_pose().rotation, np.array([0.0, across, self.distance_mm]))
 
     def sweeps_over(self, scene: Scene, seed: int) -> list[Sheet]:
-        """The hand-held laser in every frame of a scan of `scene`."""
+        """Draw the sheets of the hand-held laser in every frame of a scan of `scene`."""
         course = hand_course(sweep_range(scene, aim_of(scene)), self.sweeps, generator(seed, "sweeps"))
         factor = self.hand_baseline_mm / _HAND_BASELINE_MM
         return replace(course, baseline=course.baseline * factor).sheets(self.rig())

@@ -16,7 +16,7 @@ from core.wings.rig_planning.prediction.design import PAPER_PIXEL_UM, Design
 
 
 def read_design(path: Path) -> Design:
-    """The design in the rig.toml at `path`, or in the recording set that holds it.
+    """Read the design in the rig.toml at `path`, or in the recording set that holds it.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def read_design(path: Path) -> Design:
 
 
 def read_stated(path: Path) -> tuple[Part, Stability | None]:
-    """What the rig.toml at `path`, or in that folder, states of the part, and of how far the rig may change.
+    """Read the statements on the part and on how far the rig may change from the rig.toml at `path` or in that folder.
 
     That is as far as its temperatures have it, and within the hour: nobody knows when it will be used. InputError as
     `read_design`.

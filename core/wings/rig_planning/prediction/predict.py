@@ -60,13 +60,13 @@ class SigmaMap:
 
     @property
     def total(self) -> Array:
-        """Both together."""
+        """Own and common σ together, in mm."""
         return np.asarray(np.hypot(self.own, self.common))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Prediction:
-    """What a plan will give for one block.
+    """Prediction of a plan for one block.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Prediction:
 
 @dataclass(slots=True)
 class Planner:
-    """Predicts, and remembers what plans that differ in little have in common.
+    """Predictor that stores what plans that differ in little have in common.
 
     A scan is solved as `solving` says. Of the `part` what its temperature, expansion and surface make uncertain is
     known before any picture; None leaves it out. `stability` is how far the rig may change between calibration and
@@ -118,7 +118,7 @@ class Planner:
     _known: dict[tuple[object, ...], object] = field(default_factory=dict)
 
     def predict(self, design: Design, height_mm: float, scans: int = 1) -> Prediction:
-        """The prediction for a block of `height_mm` from `scans` drawn scans, each with calibrations of its own.
+        """Predict a block of `height_mm` from `scans` drawn scans, each with calibrations of its own.
 
         Raises
         ------
@@ -230,7 +230,7 @@ def _known_rows(part: Part, height_mm: float) -> tuple[Contribution, ...]:
 
 
 def light_not_foretold(part: Part) -> Message | None:
-    """What a scan's U has besides if light may come from below the part's surface; None where it does not."""
+    """Make the message on what U of a scan has besides if light may come from below the surface; else None."""
     if not part.lets_light_in:
         return None
     return Message(

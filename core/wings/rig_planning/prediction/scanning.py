@@ -24,7 +24,7 @@ from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 
 
 def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = silent) -> ScanFeatures:
-    """What the pictures of a scan of a block of `height_mm` will show; `seed` draws hand and noise.
+    """Simulate the features of a scan of a block of `height_mm`; `seed` draws hand and noise.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
 
 
 class Stage:
-    """A block under the rig, or another `scene` there, its flat faces listed once: the table first."""
+    """Block under the rig, or another `scene` there, its flat faces listed once: the table first."""
 
     def __init__(self, design: Design, height_mm: float, scene: Scene | None = None) -> None:
         self.rig: Rig = design.rig()
@@ -78,7 +78,7 @@ class Stage:
         self.faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
 
     def lines(self, sheets: Sequence[Sheet], seen: SeenStripes) -> list[LitLine]:
-        """The stripes of some sheets of light."""
+        """Compute the stripes of some sheets of light."""
         return [
             line
             for sheet in sheets
@@ -88,7 +88,7 @@ class Stage:
         ]
 
     def background_grey(self) -> float:
-        """The room's light on table and block, in the mean."""
+        """Compute the grey level of the room's light on table and block, in the mean."""
         lamp = LAMP / np.linalg.norm(LAMP)
         table = self.faces[0]
         top = min(self.faces, key=lambda face: float(face.corners[:, 2].mean()))

@@ -42,7 +42,7 @@ SEED = 20_230_013
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Light:
-    """One kind of stripe of a plan.
+    """Light of one kind of stripe of a plan.
 
     `width_px` is its Gaussian σ in the picture, `background_grey` what lies under it, `single` whether it is read from
     one picture (the scan's reference) instead of from the difference of two.
@@ -55,7 +55,7 @@ class Light:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StripeQuality:
-    """How well points of one kind of stripe are known, by brightness.
+    """Quality of points of one kind of stripe, by brightness.
 
     Parameters
     ----------
@@ -83,16 +83,16 @@ class StripeQuality:
     filter_px: float
 
     def sigma(self, height: Array) -> Array:
-        """Stated σ (N,) in pixels of points whose stripe is `height` (N,) grey levels high."""
+        """Compute the stated σ (N,) in pixels of points whose stripe is `height` (N,) grey levels high."""
         return _power_law(height, self.heights, self.stated)
 
     def errors(self, height: Array, rng: np.random.Generator) -> Array:
-        """Errors (N,) in pixels of neighbouring points about one pixel apart, correlated as the trial's."""
+        """Draw errors (N,) in pixels of neighbouring points about one pixel apart, correlated as the trial's."""
         unit = _correlated(len(height), self.actual_correlation_px, rng)
         return np.asarray(unit * _power_law(height, self.heights, self.actual))
 
     def flicker(self, count: int, rng: np.random.Generator) -> Array:
-        """Relative deviations (count,) of the brightness of neighbouring points."""
+        """Draw relative deviations (count,) of the brightness of neighbouring points."""
         return self.flicker_sd * _correlated(count, self.flicker_px, rng)
 
 
@@ -111,7 +111,7 @@ def try_stripes(light: Light, heights: tuple[float, float], optics: Optics, scal
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenStripes:
-    """One kind of stripe of a plan, before and after its trial (`tried`).
+    """Kind of stripe of a plan, before and after its trial (`tried`).
 
     `filter_px` is the σ of the filter that suits the stripe; `single` whether it is read from one picture alone.
     """
@@ -125,17 +125,17 @@ class SeenStripes:
 
     @classmethod
     def of_plates(cls, design: Design) -> SeenStripes:
-        """The fan's stripes on the plates of its calibration, read from the difference of two pictures."""
+        """Make the fan's stripes on the plates of its calibration, read from the difference of two pictures."""
         return cls._planned(design.rig(), design.rig().fan_beam, design, single=False)
 
     @classmethod
     def of_fan(cls, design: Design) -> SeenStripes:
-        """The fan's stripes in a scan's reference."""
+        """Make the fan's stripes in a scan's reference."""
         return cls._planned(design.rig(), design.rig().fan_beam, design, single=True)
 
     @classmethod
     def of_hand(cls, design: Design) -> SeenStripes:
-        """The hand-held laser's stripes in the frames of a scan."""
+        """Make the hand-held laser's stripes in the frames of a scan."""
         return cls._planned(design.rig(), design.rig().sweep_beam, design, single=False)
 
     @classmethod
@@ -144,7 +144,7 @@ class SeenStripes:
         return cls(rig.optics, rig.scale, single, filter_for(float(width)))
 
     def tried(self, lines: Sequence[LitLine], background_grey: float) -> SeenStripes:
-        """With the quality that stripes as wide and as bright as `lines` have over this background.
+        """Try stripes as wide and as bright as `lines` over this background; return the kind with its quality.
 
         Raises
         ------
@@ -173,7 +173,7 @@ class SeenStripes:
         return replace(self, filter_px=quality.filter_px, background_grey=background_grey, quality=quality)
 
     def centreline(self, line: LitLine, rng: np.random.Generator) -> Centreline:
-        """What the extraction would find of `line`; `rng` draws its errors."""
+        """Simulate the centreline that the extraction finds of `line`; `rng` draws its errors."""
         assert self.quality is not None, "the stripes have not been tried"
         error = self.quality.errors(line.height, rng)
         strength = line.height * np.maximum(1 + self.quality.flicker(len(line), rng), 0.05)
