@@ -36,7 +36,7 @@ def read_printed(path: Path) -> ReportedStudy:
 
 
 def printed(study: Study) -> ReportedStudy:
-    """A study as the report prints it."""
+    """Prepare a study for the report: title, facts, tables, notes and the figure's drawing."""
     return ReportedStudy(
         KINDS[kind_of(study)],
         name_of(study),
@@ -55,7 +55,7 @@ def _figure(study: InOrder, look: ReportLook, width: float) -> Figure:
 
 
 def run_lines(study: InOrder) -> dict[str, float]:
-    """The lines of a run chart by what they are called; only those that there are."""
+    """Collect the lines of a run chart by their names; only those that there are."""
     lines: dict[str, float | None]
     match study:
         case RepeatStudy():
@@ -76,7 +76,7 @@ def run_lines(study: InOrder) -> dict[str, float]:
 
 
 def control_charts(study: InOrder) -> dict[str, Chart]:
-    """The control charts of a series, by what their points are called; none where they are too few for limits."""
+    """Collect the control charts of a series by the names of their points; none where these are too few for limits."""
     if not isinstance(study, SeriesStudy) or study.charts is None:
         return {}
     return dict(zip(chart_names(study), (study.charts.location, study.charts.spread), strict=True))
@@ -85,7 +85,7 @@ def control_charts(study: InOrder) -> dict[str, Chart]:
 def control_charts_figure(
     look: ReportLook, charts: Mapping[str, Chart], unit: str, width_mm: float, height_mm: float
 ) -> Figure:
-    """Control charts one above the other, by what their points are called.
+    """Draw control charts one above the other, by the names of their points.
 
     A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
     """

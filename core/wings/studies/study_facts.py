@@ -41,13 +41,13 @@ _OF_INDICES = {
 
 
 def study_title(study: Study, words: Words = ENGLISH) -> str:
-    """What a study is called: 'Gauge R&R', 'Series: thickness'."""
+    """Make the title of a study: 'Gauge R&R', 'Series: thickness'."""
     kind, name = words(KINDS[kind_of(study)]), name_of(study)
     return words("{name}: {value}", name=kind, value=name) if name else kind
 
 
 def name_of(study: Study) -> str:
-    """Name of what a study measured: a label for the thickness, any other as the user gave it; "": it has none."""
+    """Return the name of what a study measured: a label for the thickness, any other as the user gave it; "": none."""
     if not isinstance(study, (RepeatStudy, SeriesStudy)):
         return ""
     return label("thickness") if study.name == THICKNESS else study.name
@@ -85,7 +85,7 @@ def study_tables(study: Study) -> tuple[FactTable, ...]:
 
 
 def digits_of(study: Type1Study | SeriesStudy) -> int:
-    """Return the decimals of its values: one more than their scatter has."""
+    """Return the number of decimals of a study's values: one more than their scatter has."""
     return max(decimals_of(study.s) + 1, LEAST_DIGITS)
 
 

@@ -115,7 +115,7 @@ def keep_type1(
 
 
 def look_at_study(folder: Path, id_: str) -> Study:
-    """Read the study called `id_` of the project in `folder`; InputError if it is gone or damaged."""
+    """Read the study called `id_` of the project in `folder`; InputError if it is missing or damaged."""
     return read_study(study_path(folder, id_))
 
 

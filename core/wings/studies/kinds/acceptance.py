@@ -170,7 +170,7 @@ class Reading:
 
     @property
     def error(self) -> float:
-        """Error, measured − calibrated."""
+        """Error in mm, measured − calibrated."""
         return self.measured - self.calibrated
 
 
@@ -202,12 +202,12 @@ class CheckedQuantity:
 
     @property
     def worst(self) -> Reading:
-        """The reading with the largest magnitude of error."""
+        """Reading with the largest magnitude of error."""
         return max(self.readings, key=lambda one: abs(one.error))
 
     @property
     def largest_error(self) -> float:
-        """Error of the worst reading, with its sign."""
+        """Error of the worst reading in mm, with its sign."""
         return self.worst.error
 
     def verdict_of(self, reading: Reading) -> Verdict:
@@ -238,7 +238,7 @@ class CheckedQuantity:
 
     @property
     def positions(self) -> int:
-        """Number of positions; several readings may be of one."""
+        """Number of different positions; several readings may be of one."""
         return len({one.position for one in self.readings})
 
     @property

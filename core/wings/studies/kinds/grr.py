@@ -103,7 +103,7 @@ def intervals(
 
 
 def components(squares: Mapping[str, Array], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Variances by source, each (n,), none below 0, from mean squares (n,); the formulas: see the module."""
+    """Compute the variances by source, each (n,), none below 0, from mean squares (n,)."""
     _, operators, repeats = shape
     error = squares["error"]
     both = squares.get("interaction", error)
