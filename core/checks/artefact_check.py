@@ -41,7 +41,7 @@ KINDS: Mapping[ArtefactKind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Artefact:
-    """A block, a sphere or a step whose length a certificate states.
+    """Block, sphere or step whose length a certificate states.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ class Artefact:
 
     @property
     def of_certificate(self) -> Certificate:
-        """Certificate with its own data."""
+        """Data of the certificate: number, laboratory and last day."""
         return Certificate(self.certificate, self.laboratory, self.due)
 
 
 @dataclass(frozen=True, slots=True)
 class ArtefactCheck:
-    """Artefact as measured on a `day`: in mm, with the standard uncertainty of that.
+    """Measurement of an artefact on a `day`, in mm, with its standard uncertainty.
 
     `characteristic` is the name of what was measured, as "ball diameter"; "" is the thickness of the part as a whole.
     `outside` says of one that lies outside the limits of the rig's own history that it does. By its `doubts` what was
@@ -98,7 +98,7 @@ class ArtefactCheck:
 
     @property
     def u_error_mm(self) -> float:
-        """Standard uncertainty of the error, of measurement and certificate together."""
+        """Standard uncertainty of the error in mm, of measurement and certificate together."""
         return math.hypot(self.u_mm, self.artefact.U_mm / self.artefact.k)
 
     @property
@@ -113,7 +113,7 @@ class ArtefactCheck:
 
     @property
     def lapsed(self) -> bool:
-        """Whether the certificate had expired."""
+        """Whether the certificate had expired on that day."""
         return self.artefact.of_certificate.lapsed(self.day)
 
     @property

@@ -40,7 +40,7 @@ class ControlChart:
         return self.lower, self.upper
 
     def contains(self, value: float) -> bool:
-        """Whether a value lies within the limits; one that is not known does not."""
+        """Whether a value lies within the limits; false for one that is not known."""
         return self.lower <= value <= self.upper
 
 

@@ -28,7 +28,7 @@ TO_LIMITS = 2.66
 
 @dataclass(frozen=True, slots=True)
 class RepeatStatistics:
-    """What `n` measurements of one thickness say together, in mm.
+    """Statistics of `n` measurements of one thickness, in mm.
 
     `error_mm` is mean − nominal, `rmse_mm` the root mean square of the single errors (over n), `largest_error_mm` the
     largest magnitude of one; all None without a nominal value. `std_mm` is the standard deviation of a single
@@ -44,7 +44,7 @@ class RepeatStatistics:
 
 
 def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = None) -> RepeatStatistics:
-    """Mean, error, RMSE, standard deviation and largest error of repeated `thicknesses` in mm.
+    """Compute mean, error, RMSE, standard deviation and largest error of repeated `thicknesses` in mm.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = N
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RunChart:
-    """What a chart of the values in their order needs.
+    """Chart of values in their order: centre line, limits, and values outside.
 
     Parameters
     ----------
@@ -85,14 +85,14 @@ class RunChart:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Histogram:
-    """How many values (`counts`, B) lie between the `edges` (B + 1)."""
+    """Numbers of values (`counts`, B) between the `edges` (B + 1)."""
 
     edges: Array
     counts: NDArray[np.int64]
 
 
 def run_chart(values: Array) -> RunChart | None:
-    """Centre line and limits of `values` (n,) in their order; None if n < 2."""
+    """Compute the centre line and the limits of `values` (n,) in their order; None if n < 2."""
     if len(values) < 2:
         return None
     centre = float(values.mean())
@@ -102,7 +102,7 @@ def run_chart(values: Array) -> RunChart | None:
 
 
 def histogram(values: Array) -> Histogram:
-    """Counts of `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
+    """Count `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
     if not np.ptp(values):
         counts, edges = np.histogram(values, 1)
     else:
