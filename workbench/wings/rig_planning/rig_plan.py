@@ -29,12 +29,12 @@ SIZE = (1000, 640)
 
 
 def planning_of(bench: Bench, window: QWidget) -> Callable[[], object]:
-    """Make what the menu's entry calls."""
+    """Make the function that the menu's entry calls."""
     return RigPlans(bench, window).open
 
 
 class RigPlans(QObject):
-    """Plans the open project's rig, or that of a file, in the background, and shows what comes of it."""
+    """Background plans of the open project's rig, or of that in a file, and the window that shows them."""
 
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
@@ -43,7 +43,7 @@ class RigPlans(QObject):
         """The plan that was made last, or that is being made."""
 
     def open(self) -> None:
-        """Plan the rig of the open project; without one, of a file that is asked for."""
+        """Plan the rig of the open project; without a project, ask for a file."""
         model = self._bench.model
         if model.folder is None:
             self.choose()
@@ -58,14 +58,14 @@ class RigPlans(QObject):
         self._run(jobs.FORETELL_PROJECT, (model.folder, model.project), name, said)
 
     def choose(self) -> None:
-        """Ask for the file, and plan."""
+        """Ask for a rig.toml, and plan its rig."""
         kinds = tr("Rig (*.toml)")
         path = ask.choose_file_to_open(self._window, tr("Plan a rig"), self._bench.settings.projects_folder, kinds)
         if path is not None:
             self.plan(path)
 
     def plan(self, rig: Path) -> None:
-        """Plan the rig in a file."""
+        """Plan the rig in a rig.toml."""
         self._run(jobs.FORETELL_RIG, (rig,), rig.name, str(rig))
 
     def _run(self, job: Job, what: tuple[object, ...], name: str, said: str) -> None:
@@ -95,7 +95,7 @@ class RigPlans(QObject):
 
 
 class PlanWindow(QWidget):
-    """What a rig will measure: rows, and where in the picture how well. Empty until `show_plan`."""
+    """Window with the predicted values in rows and the map of σ over the picture; empty until `show_plan`."""
 
     closed = Signal()
 
@@ -119,11 +119,11 @@ class PlanWindow(QWidget):
 
     @property
     def is_planned(self) -> bool:
-        """Whether the plan is there."""
+        """Whether the plan has been made."""
         return self._foretold is not None
 
     def show_plan(self, foretold: ForetoldRig) -> None:
-        """Show what came of it."""
+        """Show the rows and the map of a plan."""
         self._foretold = foretold
         self.table.set_rows(foretold.rows, [value for _, value in foretold.rows])
         self.map.set_map(foretold.sigma_mm, size=foretold.image_size, label=tr("σ of a depth"), unit="mm")

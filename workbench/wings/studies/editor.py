@@ -26,7 +26,7 @@ LONGEST = 5000.0
 
 
 class StudyEditor(QWidget):
-    """The table at the left, settings at the right, buttons below."""
+    """Editor of a study: table at the left, settings at the right, buttons below."""
 
     def __init__(self, studies: InspectStudies, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -62,7 +62,7 @@ class StudyEditor(QWidget):
         self._dress()
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         self._dress()
         studies, draft = self._studies, self._studies.draft
         if draft is None:

@@ -23,7 +23,7 @@ from workbench.work.tasks import Task
 
 @dataclass(frozen=True, slots=True)
 class StudiesFacts:
-    """What their buttons rest on."""
+    """Facts that the buttons of studies rest on."""
 
     busy: str
     """What is being read or worked out for a study; "": nothing."""
@@ -38,7 +38,7 @@ class StudiesFacts:
 
 
 class StudiesButtons(NamedTuple):
-    """Why each button is grey; a study being made can be given up at any time."""
+    """Reasons why each button is grey; a study being made can be given up at any time."""
 
     begin: str
     type1: str
@@ -50,7 +50,7 @@ class StudiesButtons(NamedTuple):
 
 
 def studies_buttons(facts: StudiesFacts) -> StudiesButtons:
-    """What can be done with the studies, and with the one being made."""
+    """Decide why each button of the studies, and of the one being made, is grey; "": it is not."""
     busy = tr("Wait for what is under way: {what}.", what=facts.busy) if facts.busy else ""
     choose = "" if facts.chosen else tr("Choose a study in the list first.")
     rows = "" if facts.rows else tr("Enter or paste measurements into the table first.")
@@ -81,7 +81,7 @@ THICKNESS = "thickness"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A study that is being made: its table as CSV, the folder names in it are seen from, and its settings in mm."""
+    """Study that is being made: its table as CSV, the folder names in it are seen from, and its settings in mm."""
 
     kind: Kind
     text: str
@@ -90,7 +90,7 @@ class Draft:
 
 
 class InspectStudies(QObject):
-    """The list, the chosen study, and the draft of a new one."""
+    """Presenter of the list of studies, the chosen one, and the draft of a new one."""
 
     changed = Signal()
 
@@ -107,12 +107,12 @@ class InspectStudies(QObject):
 
     @property
     def all(self) -> tuple[KeptStudy, ...]:
-        """The studies in the order they are reported."""
+        """Studies in the order they are reported."""
         return self.model.project.studies
 
     @property
     def study(self) -> Any:
-        """The chosen one, as `core.wings.studies` gives it; None as long as it is being read, or none is chosen."""
+        """Study that is chosen, as `core.wings.studies` gives it; None while it is read, or without a choice."""
         return self._looked.get(self.chosen)
 
     @property
@@ -122,7 +122,7 @@ class InspectStudies(QObject):
 
     @property
     def buttons(self) -> StudiesButtons:
-        """What can be done with the studies, and with the draft."""
+        """Reasons why each button is grey; "": it is not."""
         return studies_buttons(
             StudiesFacts(
                 busy="" if self._working is None else self._working.label,
@@ -134,7 +134,7 @@ class InspectStudies(QObject):
         )
 
     def choose(self, id_: str) -> None:
-        """Show this study; "" for none."""
+        """Choose the study to show; "" for none."""
         self.chosen = id_
         self._look()
         self.changed.emit()
@@ -152,7 +152,7 @@ class InspectStudies(QObject):
             self._put(tuple(one for one in self.all if one.id != id_), tr("remove a study"))
 
     def keep_type1(self) -> None:
-        """Keep the type-1 study of the repeats as they are now; undoable."""
+        """Store the type-1 study of the present repeats in the project; undoable."""
         spec, repeats = self._repeats.spec, self._repeats.all
         if self.buttons.type1 or spec.tolerance_mm is None:
             return
@@ -189,14 +189,14 @@ class InspectStudies(QObject):
         self.changed.emit()
 
     def give_up(self) -> None:
-        """Make no study after all, and end what is being read or worked out for it."""
+        """Discard the draft, and cancel what is being read or worked out for it."""
         if self._working is not None:
             self._working.cancel()
         self.draft, self.problem = None, ""
         self.changed.emit()
 
     def write(self, text: str) -> None:
-        """Take this text for the table."""
+        """Replace the text of the table."""
         if self.draft is not None and text != self.draft.text:
             self.draft = replace(self.draft, text=text)
 
@@ -207,7 +207,7 @@ class InspectStudies(QObject):
             self.changed.emit()
 
     def open_table(self, path: Path) -> None:
-        """Take the table in this file; names of results in it are seen from its folder."""
+        """Read the table in this file; names of results in it are seen from its folder."""
 
         def done(text: Any) -> None:
             if self.draft is not None:
@@ -216,7 +216,7 @@ class InspectStudies(QObject):
         self._run(jobs.READ_STUDY_TABLE, path, label=tr("Reading the table"), on_done=done, offers={}, of_project=False)
 
     def add_project(self, folder: Path) -> None:
-        """Add what another project has measured to the table."""
+        """Add the results of another project to the table."""
         draft = self.draft
         if draft is None:
             return
@@ -233,7 +233,7 @@ class InspectStudies(QObject):
         )  # fmt: skip
 
     def finish(self) -> None:
-        """Make the study of the draft and keep it; what is wrong with the table stays in it with a sentence."""
+        """Make the study of the draft and store it; on an error the draft stays."""
         draft = self.draft
         if draft is None:
             return
@@ -252,7 +252,7 @@ class InspectStudies(QObject):
     # ---- what happens elsewhere
 
     def forget(self) -> None:
-        """Another project is open."""
+        """Clear the choice, the draft and the studies that were read, as another project is open."""
         self.chosen, self.draft, self.problem = "", None, ""
         self._looked, self._asked = {}, set()
         self.changed.emit()

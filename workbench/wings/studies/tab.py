@@ -44,14 +44,14 @@ BESIDE_PX = 24
 
 
 def studies_tab(presenter: InspectPresenter) -> StudiesTab:
-    """The tab of the page Inspect."""
+    """Make the tab of studies for the page Inspect."""
     studies = InspectStudies(presenter.bench, presenter.repeats)
     studies.changed.connect(presenter.changed)
     return StudiesTab(studies)
 
 
 class StudiesTab(QWidget):
-    """The list above, the study below; in its place the editor while one is being made."""
+    """Tab with the list above and the study below; in its place the editor while one is being made."""
 
     def __init__(self, studies: InspectStudies, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -77,7 +77,7 @@ class StudiesTab(QWidget):
         in_column(scroll, on=self, margins=(MARGIN_PX, 6, MARGIN_PX, 4))
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show the state of the presenter."""
         studies = self.studies
         self.stack.setCurrentIndex(0 if studies.draft is None else 1)
         if studies.draft is not None:

@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 
 def type1_part(presenter: InspectPresenter) -> Type1Part:
-    """What the wing puts below the statistics of the repeats."""
+    """Make the widget that the wing puts below the statistics of the repeats."""
     study = Type1OfRepeats(presenter.bench, presenter.repeats)
     study.changed.connect(presenter.changed)
     return Type1Part(presenter.repeats, study)
 
 
 def no_type1(repeats: InspectRepeats) -> str:
-    """Why there is no type-1 study of the repeats, or ""."""
+    """Make the reason why there is no type-1 study of the repeats; "": there is one."""
     if repeats.spec.nominal_mm is None or repeats.spec.tolerance_mm is None:
         return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
     if len(repeats.all) < 2:
@@ -43,7 +43,7 @@ def no_type1(repeats: InspectRepeats) -> str:
 
 
 class Type1OfRepeats(QObject):
-    """The study of the repeats against the tolerance."""
+    """Presenter of the study of the repeats against the tolerance."""
 
     changed = Signal()
 
@@ -56,11 +56,11 @@ class Type1OfRepeats(QObject):
 
     @property
     def study(self) -> Type1Study | None:
-        """The study; None as long as there is none of the repeats as they are now."""
+        """Type-1 study of the present repeats; None as long as there is none."""
         return self._made if self._made_of == self._wanted() else None
 
     def make(self) -> None:
-        """Have the study worked out, unless it is there or under way."""
+        """Start the study in the background, unless it is there or under way."""
         repeats, wanted = self._repeats, self._wanted()
         spec = repeats.spec
         if no_type1(repeats) or spec.tolerance_mm is None or wanted in (self._made_of, self._asked):
@@ -98,7 +98,7 @@ class Type1OfRepeats(QObject):
 
 
 class Type1Part(QWidget):
-    """The study where there can be one; else what it needs, as soon as there is a repeat."""
+    """Widget with the study where there can be one, else with what it needs, as soon as there is a repeat."""
 
     def __init__(self, repeats: InspectRepeats, type1: Type1OfRepeats) -> None:
         super().__init__()
@@ -107,7 +107,7 @@ class Type1Part(QWidget):
         in_column(self.title, self.rows, self.words, on=self)
 
     def refresh(self) -> None:
-        """Show what there is now."""
+        """Show the study, or what it needs, and start it if need be."""
         self.type1.make()
         study = self.type1.study
         self.title.setVisible(study is not None)
@@ -116,6 +116,6 @@ class Type1Part(QWidget):
         set_text(self.words, told if self._repeats.all else "")
 
     def facts(self) -> Sequence[Fact]:
-        """What the study tells; nothing where there is none."""
+        """Return the facts of the study; nothing where there is none."""
         study = self.type1.study
         return () if study is None else study_facts(study)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownChart:
-    """A control chart as it is drawn: values (k,), NaN for none, whether each is good, its tip; the lines; the axes."""
+    """Control chart as it is drawn: values (k,), NaN for none, whether each is good, its tip; the lines; the axes."""
 
     values: Array
     good: NDArray[np.bool_]
@@ -32,7 +32,7 @@ class ShownChart:
 
 
 def charts(study: Study) -> tuple[ShownChart, ...]:
-    """The control charts of a study: two of a series with limits, else none."""
+    """Make the control charts of a study: two of a series with limits, else none."""
     if not isinstance(study, SeriesStudy) or study.charts is None:
         return ()
     both = (study.charts.location, study.label_of), (study.charts.spread, study.label_of_spread)
