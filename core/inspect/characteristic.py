@@ -68,7 +68,7 @@ class Characteristic:
 
     @property
     def by_master(self) -> bool:
-        """Whether it was compared with a master: the certificate of that is in its budget then."""
+        """Whether the value was compared with a master: the certificate of that is in the budget then."""
         return any(row.source is Cause.CERTIFICATE for row in self.budget)
 
     @property

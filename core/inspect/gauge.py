@@ -88,7 +88,7 @@ def fit_gauge(
     nominal_mm: float | None = None,
     progress: Progress = silent,
 ) -> GaugeFit:
-    """Find the two faces and fit them.
+    """Find the two parallel faces of a part and fit planes to them.
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ class Left:
         return cls(shape.misfit(points, part), outward, shape.design(points, part))
 
     def each_slanted(self, points: Array, part: Parts) -> Left:
-        """Add a slant of its own of each face but the first to the design; return the misfits with it."""
+        """Add a slant of each face but the first to the design; return the misfits with it."""
         away = (points - points.mean(axis=0))[:, :2] / max(float(np.abs(points[:, :2]).max()), 1e-9)
         slants = [np.where(part[:, None] == one, away, 0.0) for one in np.unique(part)[1:]]
         return Left(self.misfit, self.outward, np.hstack([self.design, *slants]))
@@ -360,7 +360,7 @@ class Pattern:
 
 
 def pattern_on(found: Judgement, places: Places, number: int, face: Cloud) -> Pattern | None:
-    """Compute the pattern over one face; None unless it is surely there and stands out in pixels."""
+    """Compute the pattern over one face; None unless it is sure and larger than STANDS_OUT_PX pixels."""
     count = found.count[places.of_face(number)]
     seen = np.flatnonzero(count)
     if found.p >= SURELY or len(seen) < _LEAST_PATCHES[len(places.sides)]:

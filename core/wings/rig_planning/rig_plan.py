@@ -58,7 +58,7 @@ class ForetoldRig:
 
 
 def foretell_rig(rig: Path, language: str, progress: Progress = silent, options: Options | None = None) -> ForetoldRig:
-    """Plan the rig of a rig.toml; the same as `trisect plan RIG`.
+    """Plan the rig of a rig.toml, as `trisect plan RIG` does.
 
     Raises
     ------

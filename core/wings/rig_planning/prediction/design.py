@@ -247,12 +247,12 @@ class Design:
         return Rig(self.camera(), self.fan(), emitter, scale, optics, beam, hand)
 
     def scene(self, height_mm: float) -> Scene:
-        """Make a scene with a block of this height in mm on the table, under the fan, as the twin stands it there."""
+        """Make a scene with a block of this height in mm on the table, under the fan, placed as the twin's."""
         block = turned(gauge_block(height_mm, self.block_mm), np.radians(YAW_DEG))
         return Scene.on_table(self.table(), block)
 
     def ball(self, diameter_mm: float) -> Scene:
-        """Make a scene with a ball of this diameter in mm on the table, where the twin lays it."""
+        """Make a scene with a ball of this diameter in mm on the table, placed as the twin's."""
         radius = diameter_mm / 2
         return Scene.on_table(self.table(), Sphere(np.array([0.0, BALL_AWAY_MM, radius]), radius))
 

@@ -230,7 +230,7 @@ def _known_rows(part: Part, height_mm: float) -> tuple[Contribution, ...]:
 
 
 def light_not_foretold(part: Part) -> Message | None:
-    """Make the message on what U of a scan has besides if light may come from below the surface; else None."""
+    """Make the message on the further row of U of a scan if light may come from below the surface; else None."""
     if not part.lets_light_in:
         return None
     return Message(

@@ -100,7 +100,7 @@ class Type1Study:
 
     @property
     def resolution_share(self) -> float | None:
-        """Resolution over T."""
+        """Resolution over T, as a fraction; None if it is not stated."""
         return None if self.resolution is None else self.resolution / self.tolerance
 
     @property
