@@ -38,7 +38,7 @@ def test_a_name_of_ones_own_is_not_translated_though_the_catalogue_has_the_word(
     (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n")
     said = trisect("study", "repeats", tmp_path / "repeats.csv", "--characteristic", name, "--language", "de")
     assert said.out.splitlines()[0].split(": ")[1].strip() == shown, said.out
-    assert language.told("files") == "Dateien"
+    assert language.text_of("files") == "Dateien"
 
 
 def test_a_study_that_is_none_is_refused_in_a_sentence():

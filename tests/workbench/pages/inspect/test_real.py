@@ -80,7 +80,7 @@ def test_a_repeat_and_its_thickness_are_there_after_reopening(presenter, qtbot):
     qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
     assert presenter.scan.gauge.thickness_mm == thickness
     assert presenter.repeats.statistics().mean_mm == pytest.approx(thickness)
-    assert presenter.repeats.can_add.startswith("This scan is among the repeats already.")
+    assert presenter.repeats.cannot_add.startswith("This scan is among the repeats already.")
     assert step_states(presenter.project, presenter.model.results)["report"].sentence.startswith("Out of date")
 
 

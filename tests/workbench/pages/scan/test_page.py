@@ -468,7 +468,7 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
     measuring.current.reported.emit(cases.detail(0, renewed=True, hints=("Tilt the laser more.",)))
     qtbot.waitUntil(lambda: recorded.picture.image._picture.picture[0, 0] == 70)
     recorded.refreshing.at_once()
-    assert recorded.running.condition.said == "good" and recorded.running.speed.said == "1 px/frame · good"
+    assert recorded.running.condition.value_text == "good" and recorded.running.speed.value_text == "1 px/frame · good"
     assert recorded.running.covered.text() == "covered 63 % of what was lit"
     assert recorded.running.hints.text == "Tilt the laser more."
     titles = recorded.picture.image.legend_titles
