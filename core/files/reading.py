@@ -29,7 +29,7 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
     try:
         content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
-        raise cannot_read(path, error) from error
+        raise _no_content(path, error) from error
     report_read(path)
     return content
 
@@ -73,7 +73,7 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
             todo=Message("advice.save_utf8", "save it as UTF-8 in an editor"),
         ) from error
     except (OSError, ValueError) as error:
-        raise cannot_read(path, error) from error
+        raise _no_content(path, error) from error
     report_read(path)
     return text
 
@@ -131,8 +131,13 @@ def refused_path(error: Exception) -> InputError | None:
 
 def cannot_read(path: Path, error: OSError | ValueError) -> InputError:
     """Make the error for a file or folder that is there and cannot be read."""
-    if isinstance(error, IsADirectoryError):
-        todo = Message("advice.file_in_its_place", "put a file there")
-        return InputError(Message("file.is_folder", "this is a folder"), where=path, todo=todo)
     reason = str(getattr(error, "strerror", "") or error)
     return InputError(Message("file.cannot_be_read", "cannot be read ({reason})", reason=reason), where=path)
+
+
+def _no_content(path: Path, error: OSError | ValueError) -> InputError:
+    """Make the error for a file that cannot be read; systems complain differently of a folder in its place."""
+    if not path.is_dir():
+        return cannot_read(path, error)
+    todo = Message("advice.file_in_its_place", "put a file there")
+    return InputError(Message("file.is_folder", "this is a folder"), where=path, todo=todo)

@@ -105,16 +105,14 @@ def cancel(t: Technician, button: str, stage: str) -> None:
     t.press(button)
     t.until(lambda: canceller.ended_at, f"the job to end ({stage})", 60)
     assert canceller.pressed_at, f"the job never came to {stage}"
+    assert canceller.ended_at - canceller.pressed_at < WITHIN_S + SLACK_S, stage
+    t.idle()
+    canceller.leave()
+    assert t.errors() == [], stage
     if stage in SHORT and canceller.outcome == ["done"]:
-        t.idle()
-        canceller.leave()
         assert fingerprint(folder) != before, "told as done, but nothing has been written"
         assert dict(t.model.results) != results, "told as done, but not in the project"
         return
     assert canceller.outcome == ["cancelled"], stage
-    assert canceller.ended_at - canceller.pressed_at < WITHIN_S + SLACK_S, stage
-    t.idle()
-    canceller.leave()
     assert fingerprint(folder) == before, stage
     assert dict(t.model.results) == results, stage
-    assert t.errors() == [], stage

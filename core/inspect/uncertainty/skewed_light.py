@@ -89,7 +89,7 @@ def is_surely_skewed(seen: MeanSkewness) -> bool:
     """
     if seen.sweeps < LEAST_SWEEPS:
         return False
-    limit = float(stdtrit(seen.sweeps - 1, ndtr(SURELY)))
+    limit = float(stdtrit(seen.sweeps - 1, float(ndtr(SURELY))))
     return abs(seen.mean) > max(limit * seen.error, LEAST_SKEWNESS)
 
 

@@ -131,3 +131,14 @@ def test_a_long_value_takes_several_lines_where_there_is_no_room_for_one(qtbot):
         lines.append(value.heightForWidth(value.width()) // value.fontMetrics().height())
     assert lines[0] > lines[1] == 1
     assert rows.text_of("Less material") == long
+
+
+def test_a_long_value_without_a_blank_is_not_cut(qtbot):
+    rows = ValueRows()
+    qtbot.addWidget(rows)
+    rows.set_rows([("Surface", "a_surface_of_the_part_as_designed_second_revision.stl of 2026", "", "")])
+    rows.show()
+    rows.resize(rows.minimumSizeHint().width(), 200)
+    QApplication.processEvents()
+    value = rows._labels[0][1]
+    assert value.width() >= value.fontMetrics().horizontalAdvance(value.text().split()[0]) > VALUE_PX

@@ -140,7 +140,10 @@ class _Value(QLabel):
 
     def minimumSizeHint(self) -> QSize:
         hint = super().minimumSizeHint()
-        return QSize(VALUE_PX, hint.height()) if self.wordWrap() else hint
+        if not self.wordWrap():
+            return hint
+        longest = max(map(self.fontMetrics().horizontalAdvance, self.text().split()), default=0)
+        return QSize(max(VALUE_PX, longest + 2), hint.height())  # a name of a file has no blank to break at
 
 
 class Verdict(QFrame):

@@ -27,7 +27,7 @@ def begin_surface(
 
 def get_ready(_: None, /, *, progress: Progress = silent) -> None:
     """Load all that `make_surface` needs, which every process does anew."""
-    make_surface(level_patch(), progress=progress)
+    make_surface(level_patch())  # its progress is nobody's
 
 
 def level_patch() -> tuple[Cloud, tuple[int, int]]:
