@@ -19,7 +19,7 @@ class Exclusion(Enum):
 
     @property
     def message(self) -> Message:
-        """Sentence for this exclusion."""
+        """Sentence that tells why a view, pose or frame is excluded."""
         return _WORDS[self]
 
 
@@ -46,7 +46,7 @@ Reason = Exclusion | Message
 
 
 def message_of(reason: Reason) -> Message:
-    """Give the sentence for a reason."""
+    """Return the sentence of a reason to exclude something: an `Exclusion` has one, a message is one."""
     return reason.message if isinstance(reason, Exclusion) else reason
 
 
@@ -58,7 +58,7 @@ class Excludable:
 
     @property
     def reason(self) -> Message | None:
-        """Sentence why it is excluded; None if it is not."""
+        """Sentence that tells why the view, pose or frame is excluded; None if it counts."""
         return None if self.exclusion is None else message_of(self.exclusion)
 
 
@@ -66,7 +66,9 @@ _KNOWN = {one.message.code: one for one in Exclusion} | {str(one.message): one f
 
 
 def known_exclusion(kept: Message | None) -> Reason | None:
-    """Find the exclusion that a file states, by its code, or by its English words in older files.
+    """Convert the reason for an exclusion read from a file to an `Exclusion`, or leave a message as it is.
+
+    None stays None.
 
     Examples
     --------

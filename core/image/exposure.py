@@ -43,12 +43,12 @@ class Exposure:
 
     @property
     def is_good(self) -> bool:
-        """Whether the exposure needs no change."""
+        """Whether the exposure needs no change: its factor is 1."""
         return self.factor == 1.0
 
 
 def stripe_exposure(centrelines: Sequence[Centreline], full_scale: float) -> Exposure | None:
-    """Measure the exposure of the stripes of one picture, and by how much it should change.
+    """Measure the exposure of the stripes of one picture, and its factor of change; None with too few points to tell.
 
     Parameters
     ----------

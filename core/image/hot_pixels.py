@@ -50,7 +50,10 @@ def standing_out(picture: Picture) -> NDArray[np.int64]:
 
 
 def hot_pixels(pictures: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
-    """Find the hot pixels: places that stand out in nearly all `pictures`, each as `standing_out` gives it."""
+    """Find the hot pixels, (K,) places: those that are in nearly all `pictures`, lists by `standing_out`.
+
+    None are found in too few pictures.
+    """
     if len(pictures) < _FEWEST_PICTURES:
         return np.zeros(0, dtype=np.int64)
     places, times = np.unique(np.concatenate(pictures), return_counts=True)

@@ -69,15 +69,15 @@ class Sites:
     period: int = PERIOD_PX
 
     def of(self, picture: NDArray[Any]) -> NDArray[Any]:
-        """Select the pixels of a picture (H, W) at these sites, about (H / period, W / period)."""
+        """Select the pixels of a picture (H, W) at the sites of this colour, about (H / period, W / period)."""
         return np.ascontiguousarray(picture[self.v :: self.period, self.u :: self.period])
 
     def places_of(self, uv: Array) -> Array:
-        """Convert places (N, 2) from px of the whole picture to px of the sites."""
+        """Convert places (N, 2) from px of the whole picture to px of the picture made of these sites alone."""
         return np.asarray((uv - (self.u, self.v)) / self.period)
 
     def stripe_of(self, stripe: StripeSettings | None) -> StripeSettings | None:
-        """Convert a stripe from px of the whole picture to px of the sites; None stays None."""
+        """Convert a stripe's width from px of the whole picture to px of these sites; None stays None."""
         return None if stripe is None else replace(stripe, width_px=stripe.width_px / self.period)
 
     @overload
@@ -85,7 +85,7 @@ class Sites:
     @overload
     def stripe_in_whole_picture(self, stripe: None) -> None: ...
     def stripe_in_whole_picture(self, stripe: StripeSettings | None) -> StripeSettings | None:
-        """Convert a stripe from px of the sites to px of the whole picture; None stays None."""
+        """Convert a stripe's width from px of these sites to px of the whole picture; None stays None."""
         return None if stripe is None else replace(stripe, width_px=stripe.width_px * self.period)
 
     def in_whole_picture(self, lines: Sequence[Centreline]) -> tuple[Centreline, ...]:
@@ -109,20 +109,20 @@ ALL_SITES = Sites(0, 0, 1)
 
 
 def sites_of(pattern: Pattern, colour: str) -> Sites:
-    """Give the sites that see "red", "green" or "blue"; of green, with two in a tile, the first."""
+    """Return the sites of a colour mosaic that see "red", "green" or "blue"; of two green ones the first."""
     at = pattern.index(colour[0].upper())
     return Sites(at % PERIOD_PX, at // PERIOD_PX)
 
 
 def colours_of(picture: NDArray[Any], pattern: Pattern) -> NDArray[Any]:
-    """Interpolate blue, green and red (H, W, 3) of a raw picture (H, W): measured at the sites, means between them."""
+    """Interpolate a raw picture (H, W) of a colour mosaic to blue, green and red, (H, W, 3)."""
     return np.asarray(cv2.cvtColor(picture, _TO_BGR[pattern]))
 
 
 def even_grey(picture: NDArray[Any]) -> NDArray[np.uint16]:
-    """Bring all sites of a raw picture (H, W) of a black and white target to one sensitivity.
+    """Scale the colours of a raw picture (H, W) of a black and white target to one white level, in 16 bits.
 
-    So every pixel of it was measured, and an edge lies where it is. 16 bits, for no level is lost.
+    So every pixel of it was measured, and an edge lies where it is. The least sensitive colour is the standard.
     """
     white = float(np.iinfo(picture.dtype).max)
     rows, columns = (size // PERIOD_PX for size in picture.shape)

@@ -36,7 +36,7 @@ class Repeats:
         self._seen: set[bytes] = set()
 
     def is_repeat(self, *pixels: bytes) -> bool:
-        """Whether one of the pictures of a view, pose or frame was given before; all are remembered."""
+        """Whether one of these hashes of `pixels`, but for b"", was given in an earlier call; remembers all."""
         known = {one for one in pixels if one}
         repeated = not self._seen.isdisjoint(known)
         self._seen |= known

@@ -35,7 +35,7 @@ _PRIOR = math.log(1 / 50 / (0.6 * 0.15))
 
 @compiled()
 def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
-    """Find the `bins` of a line in which it has a kink or a jump, judged from ± `reach` px: (B,) True there."""
+    """Flag those `bins` (B, 5) of a line that have a kink or a jump, judged within ± `reach` px: (B,) True there."""
     count = len(bins)
     broken, suspected = new_flags(count), new_flags(count)
     best = row_of(count, math.inf)  # misfit of the broken curve where a break explains much

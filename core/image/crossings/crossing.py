@@ -227,7 +227,7 @@ def _arm_too_short(line: LineAt, origin: tuple[float, float], reach: float) -> b
 
 @inlined()
 def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array, result: Array) -> None:
-    """Cross the local fits of two lines near one segment of each.
+    """Cross the local fits of two lines near one segment of each; the crossing's figures go into `result`.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ _NEGLIGIBLE = 15.0
 
 @inlined()
 def krige(right: Array, left: Array, reach: float) -> Array:
-    """Estimate a line at x = 0: (6,) y, y', y'', variance of y, number of the likeliest choice and its variance.
+    """Estimate a line at x = 0 by kriging: (6,) y, y', y'', variance of y, likeliest choice and its variance.
 
     `right` (N, 4) and `left` (M, 4) are the bins at x ≥ 0 and x < 0, each from 0 outwards.
     """
@@ -99,7 +99,7 @@ def krige(right: Array, left: Array, reach: float) -> Array:
 
 @inlined()
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
-    """Compute y at x = 0 for the choice `change` of `krige`.
+    """Compute y of a line at x = 0 for one `change` of curvature out of those that `krige` tries.
 
     It is linear in the y of bins `right` (N, 4), `left` (M, 4).
     """
@@ -112,7 +112,7 @@ def influence(right: Array, left: Array, reach: float, sigma: float, change: int
 
 @inlined()
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
-    """Compute the log odds of two lines that end at x = 0, `right` (N, 4) and `left` (M, 4), over one.
+    """Compute how much likelier bins `right` (N, 4), `left` (M, 4) are two lines than one, as log odds.
 
     Per px² of jump·kink·reach.
 
@@ -148,10 +148,7 @@ def _log_sum(scores: Array) -> float:
 
 @inlined()
 def straight_sigma(right: Array, left: Array) -> float:
-    """Compute the standard uncertainty in px of a straight line in its middle.
-
-    Of bins `right` (N, 4), `left` (M, 4).
-    """
+    """Compute the standard uncertainty in px of the middle of a straight line through all these bins."""
     ahead, behind = 0.0, 0.0
     for k in range(len(right)):
         ahead += right[k, INFORMATION]

@@ -30,7 +30,7 @@ def bin_length(cell_px: float, correlation_px: float) -> float:
 
 @compiled()
 def binned(points: Array, arc: Array, length: float, correlation: float) -> Array:
-    """Reduce one line, `points` (N, 3) u, v, 1/σ² and `arc` (N,), to the bins (B, 5) of `length` px with a weight."""
+    """Average a line's `points` (N, 3) u, v, 1/σ² in bins of `length` px along it: (B, 5), empty ones left out."""
     count = len(points)
     bins = zero_table(int(arc[-1] / length) + 1, 5)
     for k in range(count):
@@ -59,7 +59,7 @@ def binned(points: Array, arc: Array, length: float, correlation: float) -> Arra
 
 @inlined()
 def in_frame(bins: Array, first: int, behind: int, step: int, frame: tuple[float, float, float, float]) -> Array:
-    """Transform bins for kriging: (N, 4) x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread.
+    """Transform some `bins` of a line into a `frame` (u, v, t_u, t_v): (N, 4) x, y, 1/σ², spread.
 
     Those from `first` on to before `behind`, upwards or downwards as `step` (1 or −1) says.
     """

@@ -55,10 +55,10 @@ class LineAt(NamedTuple):
 
 @inlined()
 def local_fit(line: LineAt, origin: tuple[float, float], reach: float, cell: float, fit: Array, share: Array) -> bool:
-    """Fit a line within ± `reach` px of its segment, in a frame at `origin`, u and v; False if it cannot be fitted.
+    """Fit a curve to a line within ± `reach` px of its segment; False if that is not possible.
 
-    The curve goes into `fit` (FIT,); into `share` (K,) what the errors of the cells of `cell` px do to its place, in
-    pixels for one standard deviation of the mean of a cell's bins.
+    The frame's origin is at `origin`, u and v. Into `share` (K,) goes what the errors of the cells of `cell` px do to
+    the line's place, in pixels for one standard deviation of the mean of a cell's bins.
     """
     bins, broken, arc = line.bins, line.broken, line.arc
     count = len(bins)

@@ -81,13 +81,13 @@ class Stack:
         return len(self.lines)
 
     def point_at(self, i: int, along: float) -> int:
-        """Find the point of piece i nearest to the length `along` it."""
+        """Find the index of that point of piece `i` whose length along the piece is nearest to `along`, in px."""
         arc = self.arc[self.starts[i] : self.starts[i + 1]]
         after = min(int(np.searchsorted(arc, along)), len(arc) - 1)
         return after - 1 if after > 0 and along - arc[after - 1] < arc[after] - along else after
 
     def piece(self, i: int) -> StackedPiece:
-        """Give piece i with its points, bins and breaks."""
+        """Select piece number `i` of the centrelines, with its points, bins and breaks."""
         part = slice(self.starts[i], self.starts[i + 1])
         correlation = self.lines[i].correlation_px
         return StackedPiece(self.points[part], self.arc[part], self.bins[i], self.broken[i], correlation)
@@ -178,7 +178,7 @@ def segment_apart(p: Array, q: Array, box: Array) -> bool:
 
 @inlined()
 def segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
-    """Whether the segment from p (≥ 2,) to q cuts the one from r to s; the last point belongs to the next segment."""
+    """Whether the segment from p (≥ 2,) to q, without q itself, intersects the segment from r to s, without s."""
     du, dv, eu, ev = q[0] - p[0], q[1] - p[1], s[0] - r[0], s[1] - r[1]
     cross = du * ev - dv * eu
     if cross == 0.0:

@@ -66,9 +66,9 @@ class Exposures:
 
 
 def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline, ...], tuple[Exposures, ...]]:
-    """Merge the centrelines of several exposures, longest first, and compare each of the others with the first.
+    """Merge the centrelines of several exposures, longest first; compare each of `others` with `first`.
 
-    Heights are in grey levels of the first exposure. What moved against that, or against what is longer, is left out.
+    Heights are in grey levels of the first exposure. What moved between exposures is left out.
     """
     longest, *shorter = sorted((first, *others), key=lambda one: -one.light)
     lines, saturated = tuple(longest.lines), longest.saturated
@@ -93,9 +93,10 @@ def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline
 def bracketed(
     long: Sequence[Centreline], short: Sequence[Centreline], saturated: NDArray[np.bool_]
 ) -> tuple[tuple[Centreline, ...], Exposures]:
-    """Replace points of the long exposure's centrelines where it is saturated by those of the short one, longest first.
+    """Replace what is saturated in the `long` exposure's centrelines by points of the `short` one.
 
-    Heights are in grey levels of the long exposure, against which the short one is told.
+    The centrelines come longest first. Heights are in grey levels of the long exposure, against which the short one is
+    told.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ class Centreline:
         return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Centreline:
-        """Select the points for which `keep` is true, or which it numbers."""
+        """Select the points of the centreline by a mask (N,), by indices or by a slice."""
         return Centreline(
             self.uv[keep],
             self.normal[keep],

@@ -24,9 +24,9 @@ EXCHANGED = Message(
 
 
 def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
-    """Compute the ratio of the strongest light that only the off picture (H, W) has to that of the on picture.
+    """Compute the ratio of the strongest light that only `off` (H, W) shows to that only `on` (H, W) shows.
 
-    The off picture is brought to the exposure of the other. 0 where the two differ in size.
+    Picture `off` is first brought to the exposure of `on`. 0 where the two differ in size.
     """
     if on.shape != off.shape:
         return 0.0
@@ -37,5 +37,5 @@ def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
 
 
 def are_exchanged(ratios: Sequence[float]) -> bool:
-    """Whether pictures on and off are exchanged in most of the pairs with these ratios."""
+    """Whether fan on and off are exchanged in most pairs of pictures, by their `light_off_over_on`."""
     return len(ratios) > 0 and float(np.median(ratios)) > _TIMES

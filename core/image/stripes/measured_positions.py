@@ -51,14 +51,14 @@ class StripePicture:
     filter_px: float
 
     def refined(self, stripes: list[StripeModel]) -> list[Refined]:
-        """Refine these stripes to their likeliest places."""
+        """Move the points of these stripes to their likeliest places in this picture."""
         return [
             refine(self.picture, self.state, stripe, self.noise, self.speckle, self.filter_px) for stripe in stripes
         ]
 
 
 def by_measured_section(lit: StripePicture, lines: list[Refined]) -> list[Refined] | None:
-    """Locate stripes by their measured section; None where a Gaussian fits or no other section is known well.
+    """Locate stripes by their picture's own cross-section; None where a Gaussian does or none is known.
 
     Parameters
     ----------

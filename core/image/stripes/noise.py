@@ -107,7 +107,7 @@ class NoiseModel:
         return variance
 
     def of_difference(self, common_grey: float = 0.0) -> NoiseModel:
-        """Compute the noise of picture − reference, both of this noise and with `common_grey` of the same light."""
+        """Compute the noise of picture − reference, both with this noise and `common_grey` of light."""
         return NoiseModel(
             float(np.sqrt(2 * self.read_grey**2 + 2 * self.grey_per_electron * max(common_grey, 0.0))),
             self.grey_per_electron,
@@ -137,10 +137,7 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
 
 
 def free_of_structure(noise: NoiseModel, other: NoiseModel, level: float) -> NoiseModel:
-    """Choose the `other` estimate where it is so much lower at a grey `level` that `noise` includes structure.
-
-    Else `noise`.
-    """
+    """Return `other` if it is so much lower at a grey `level` that `noise` holds structure; else `noise`."""
     return other if _times(noise, other, level) > _STRUCTURED else noise
 
 

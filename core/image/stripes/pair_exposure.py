@@ -30,9 +30,9 @@ class Exposed(NamedTuple):
 
     @classmethod
     def of(cls, on: NDArray[Any], off: NDArray[Any], full_scale: float) -> Exposed:
-        """Estimate the exposure of `on` (H, W) against `off` (H, W), the same part of both.
+        """Fit gain and offset of the exposure of `on` (H, W) against `off` (H, W), the same part of both pictures.
 
-        Equal where it does not matter.
+        Gain 1 and offset 0 where too little is known, or the difference is too small to matter.
         """
         every = max(1, int(np.sqrt(on.size / SAMPLES)))
         x = off[::every, ::every].ravel().astype(np.float64)
@@ -54,7 +54,7 @@ class Exposed(NamedTuple):
         return cls(gain, offset)
 
     def like(self, other: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Convert the other picture (H, W) to the exposure of this one."""
+        """Scale the picture `other` (H, W) by gain and offset to the exposure of the one compared with it."""
         if self == Exposed():
             return other
         return np.float32(self.gain) * other + np.float32(self.offset)

@@ -69,7 +69,7 @@ class Piece:
         return np.where(self.usable, 1.0, _UNUSABLE_WEIGHT)
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
-        """Select the usable ones of the points `run` (N, ≥ 2) and of their standard uncertainties (N,)."""
+        """Select the points `run` (N, ≥ 2) and standard uncertainties `sigma` (N,) at the points that are `usable`."""
         return (run, sigma) if self.usable.all() else (run[self.usable], sigma[self.usable])
 
 
@@ -81,11 +81,11 @@ def estimate_positions(
     settings: StripeSettings,
     noise: NoiseModel,
 ) -> list[Refined]:
-    """Estimate the final positions of the points of all pieces of a `picture` (H, W).
+    """Estimate the final positions of the points of all pieces of a `picture` (H, W), the likeliest ones.
 
-    They are the likeliest ones. Steger's, corrected for their biases, stay beside other light, and everywhere if the
-    two disagree on the whole. Both are right for a Gaussian; a skewed section pulls both, and the flanks that a
-    likelihood with speckle listens to pull more.
+    Steger's positions, corrected for their biases, stay beside other light, and everywhere if the two disagree on the
+    whole. Both are right for a Gaussian; a skewed section pulls both, and the flanks that a likelihood with speckle
+    listens to pull more.
     """
     g = settings.filter_px
     weights = [piece.weight for piece in pieces]

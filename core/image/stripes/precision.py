@@ -45,10 +45,7 @@ _OUTLIER = 25.0  # times the usual square of a difference: larger ones are cut d
 
 
 def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> float:
-    """Compute the noise of the second derivative across a line, as a stripe's height in grey levels.
-
-    For white noise.
-    """
+    """Compute the noise of a second derivative from white pixel noise, as a stripe's height in grey levels."""
     second: float = pixel_noise * math.sqrt(3 / (16 * math.pi)) / filter_px**3
     return second / ridge_response(1.0, stripe_px, filter_px)
 
@@ -69,7 +66,7 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
 
 
 def compression_sigma(height: Array, noise: NoiseModel) -> Array:
-    """Compute the least standard uncertainty (N,) in px by compression, of stripes of this height in grey levels."""
+    """Compute the uncertainty (N,) in px that lossy compression adds to stripes of height (N,)."""
     return np.asarray(COMPRESSION_SHARE * noise.compression.grey / np.maximum(height, 1.0))
 
 
@@ -87,7 +84,7 @@ def _noise_sigma(height: Array, width: Array, background: Array, read: float, sh
 
 
 def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[float]:
-    """Measure the scatter in px of each line beyond the law, given as points (N, ≥ 4) and sigma (N,).
+    """Measure the scatter in px of each line's points (N, ≥ 4) beyond what their stated sigma (N,) explains; 0 if none.
 
     Measured by third differences between points one correlation length apart, which see neither the line's place
     and direction nor its curvature. Short lines take over some of what all lines show.
@@ -101,7 +98,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
 
 
 def scatter(lines: list[Array], correlation: float) -> float:
-    """Compute the standard deviation in px of all points of some lines, each (N, ≥ 4), as `roughness`; 0 if too few."""
+    """Compute the standard deviation in px of all points of some lines (N, ≥ 4) about them; 0 if too few."""
     lag = max(1, round(correlation))
     sums = [_excess(points, np.zeros(len(points)), lag, correlation) for points in lines]
     number = sum(n for _, n in sums)

@@ -53,7 +53,7 @@ class Profiles:
     skewness: Array
 
     def select(self, part: slice) -> Profiles:
-        """Select the cross-sections of a part of the run."""
+        """Select the cross-sections of those points of the run that are in the slice `part`."""
         return Profiles(
             self.height[part],
             self.background[part],
@@ -104,7 +104,7 @@ def measure_profiles(
 
 
 def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float) -> Fits:
-    """Fit cross-sections at points of a `run` (N, ≥ 4) two filter σ apart, each to the nearest pixels alone."""
+    """Fit cross-sections at points of a `run` (N, ≥ 4) two filter σ apart; points whose fit fails are left out."""
     at = _places(len(run), _stride(filter_px))
     fits = fit_sections(picture, state, run[at, :4], stripe_px, _STRIDE / 2 * filter_px)
     good = fits[:, 0] > 0
@@ -112,7 +112,7 @@ def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_
 
 
 def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter_px: float) -> Profiles:
-    """Interpolate cross-sections to every point of a `part` of a run from those fitted within that part.
+    """Interpolate the cross-sections of `fits` to every point of a `part` of a run, from those within that part alone.
 
     A running median removes outliers first; `arc` (N,) is the length along the run in px.
     """

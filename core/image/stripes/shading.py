@@ -27,7 +27,7 @@ _LEAST_POINTS = 5  # of a centreline; fewer have no slope
 
 
 def shading_sigma(centreline: Centreline) -> Array:
-    """Compute the standard uncertainty (N,) in px, across the stripe, from the brightness that changes along it."""
+    """Compute the standard uncertainty (N,) in px across the stripe by brightness that changes along it."""
     count = len(centreline)
     if count < _LEAST_POINTS:
         return np.zeros(count)

@@ -48,7 +48,7 @@ NO_SPECKLE = Speckle(0.0, 0.0)
 
 
 def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
-    """Measure the speckle on stripes from cuts of neighbouring pixels.
+    """Measure contrast and extent of the laser speckle on stripes, from residuals of neighbouring cuts across them.
 
     Parameters
     ----------

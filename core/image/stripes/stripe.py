@@ -67,5 +67,5 @@ USUAL_STRIPE = StripeSettings(6.0, 60.0)
 
 
 def filter_for(stripe_px: float) -> float:
-    """Compute σ in pixels of the Gaussian filter for a stripe of σ `stripe_px`."""
+    """Compute σ in px of the Gaussian filter that suits a stripe of Gaussian σ `stripe_px`."""
     return max(FILTER_IN_SIGMA * stripe_px, _SMALLEST_FILTER_PX)

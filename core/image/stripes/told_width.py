@@ -25,11 +25,9 @@ _ROUNDS = 3
 def as_measured(
     told: StripeSettings, look: Callable[[StripeSettings], tuple[Centreline, ...]]
 ) -> tuple[StripeSettings, tuple[Centreline, ...]]:
-    """Extract centrelines by `look` with the `told` settings.
+    """Extract centrelines by `look` with the `told` width, again with the measured one if that differs much from it.
 
-    Again with the measured width where that is very different.
-
-    With it come the settings that it was found with.
+    Returns the settings that they were found with, and the centrelines.
     """
     found = look(told)
     for _ in range(_ROUNDS):
@@ -44,7 +42,7 @@ def as_measured(
 
 
 def stated_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings | None]) -> tuple[Message, ...]:
-    """Note if a width was `told` and other widths were `used` instead, with the one farthest from it."""
+    """Note that a width far from the `told` one was `used`, naming the farthest; nothing if none was."""
     if told is None:
         return ()
     widths = [settings.width_px for settings in used if settings is not None]

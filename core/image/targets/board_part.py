@@ -40,7 +40,7 @@ class Place(NamedTuple):
 
 
 def places(picture: NDArray[np.uint8], grid: Array, board: Checkerboard) -> list[Place]:
-    """List places on `board` where the corners `grid` (R, C, 2), right-handed, may lie; none if it is no part of it.
+    """List places on `board` where the corners `grid` (R, C, 2), right-handed, may lie; [] if nowhere.
 
     Places that the board's own symmetry makes alike count as one: that whose origin is nearest to the picture's top
     left, as for a whole board.
@@ -54,12 +54,12 @@ def places(picture: NDArray[np.uint8], grid: Array, board: Checkerboard) -> list
 
 
 def right_handed_grid(grid: Array) -> Array:
-    """Mirror `grid` (R, C, 2) if it is left-handed."""
+    """Mirror `grid` (R, C, 2) if it is left-handed, else return it unchanged."""
     return grid if right_handed(grid) else grid[:, ::-1]
 
 
 def on_board(place: Place, grid: Array, board: Checkerboard) -> tuple[Array, Array]:
-    """Arrange the part's corners (r, c, 2) in the board's order, with their points (r · c, 3) in mm."""
+    """Turn the corners `grid` (R, C, 2) of a part to the board's order; also give their points in mm."""
     way = np.rot90(grid, place.turn)
     rows, columns = way.shape[:2]
     points = board.points.reshape(board.rows, board.columns, 3)
@@ -68,9 +68,9 @@ def on_board(place: Place, grid: Array, board: Checkerboard) -> tuple[Array, Arr
 
 
 def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
-    """Drop the outermost corners of `grid` (R, C, 2) if its ground is as dark as its black squares; else None.
+    """Drop the outermost corners of `grid` (R, C, 2) where the ground around the board is as dark as its black squares.
 
-    The ground must be seen on two sides at least, and be dark on all on which it is seen.
+    None if it is not: the ground must be seen on two sides at least, and be dark on all on which it is seen.
     """
     if min(grid.shape[:2]) < 5:
         return None

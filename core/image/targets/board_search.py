@@ -70,7 +70,7 @@ class Found:
 
 
 def quick_search(picture: NDArray[np.uint8]) -> Iterator[Found]:
-    """Search for boards in the picture reduced to about 1000 and 2000 pixels, as it is and without laser stripes."""
+    """Yield boards found in the picture reduced to 1000 and 2000 px, with and without laser stripes."""
     for longest in (1000, 2000):
         small, factor = reduced(picture, longest)
         for candidate in (small, without_stripes(small, 9)):
@@ -81,7 +81,7 @@ def quick_search(picture: NDArray[np.uint8]) -> Iterator[Found]:
 
 
 def thorough_search(picture: NDArray[np.uint8], columns: int, rows: int) -> Iterator[Found]:
-    """Search for boards of `columns` × `rows` inner corners in a pyramid of pictures, and then by OpenCV."""
+    """Yield boards found at several scales, then those OpenCV finds of `columns` × `rows` corners."""
     scales = _pyramid(picture)
     for small, factor in scales:
         for grid, cut_off in _boards(small, _corner_like(small)):

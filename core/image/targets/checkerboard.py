@@ -165,7 +165,7 @@ def _refined_view(
 
 
 def half_window(grid: Array) -> int:
-    """Compute half the window in px for corners (R, C, 2): as large as squares and lens distortion allow."""
+    """Compute half the width in px of a window that suits the refinement of corners `grid` (R, C, 2)."""
     nearest = float(spacing(grid).min())
     room = int(np.clip(round(0.5 * nearest), 2, LARGEST_HALF_WINDOW))
     bends = np.concatenate([_bends(line) for line in (*grid, *grid.transpose(1, 0, 2))])

@@ -68,9 +68,7 @@ def squares_around(picture: Picture, corner: Array, along: Array, down: Array, s
 
 
 def blackness(picture: Picture, corner: Array, along: Array, down: Array, contrast: float) -> NDArray[np.int_]:
-    """Compute for each corner (N,) +1 if its first and third squares are black, −1 if the others are.
-
-    0 if it is no corner.
+    """Compute for each `corner` (N,) +1 if first and third square around it are black, −1 if the other two are, else 0.
 
     Looked at in the squares, each for itself, and close to the corner, where round spots leave a gap and blur a smear.
     """
@@ -95,7 +93,7 @@ def is_checkered(picture: Picture, grid: Array) -> bool:
 
 
 def is_even(grid: Array) -> bool:
-    """Whether each step along the rows and columns of `grid` (R, C, 2) is much like the next."""
+    """Whether steps next to each other along rows and columns of `grid` (R, C, 2) are nearly equal."""
     limit = MOST_UNEVEN * spacing(grid)
     across = np.linalg.norm(np.diff(grid, 2, axis=1), axis=2) < limit[:, 1:-1]
     down = np.linalg.norm(np.diff(grid, 2, axis=0), axis=2) < limit[1:-1]
@@ -108,14 +106,14 @@ def steps_of(grid: Array) -> tuple[Array, Array]:
 
 
 def contrast_of(picture: Picture, grid: Array) -> float:
-    """Compute the median difference of white and black squares of `picture` (H, W) around corners `grid` (R, C, 2)."""
+    """Compute the median difference in grey levels of white and black squares around the corners `grid` (R, C, 2)."""
     along, down = steps_of(grid)
     levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
     return float(np.nanmedian(np.abs(levels[:, 0] + levels[:, 2] - levels[:, 1] - levels[:, 3])) / 2)
 
 
 def grow(picture: NDArray[np.uint8], grid: Array, most: int = 60) -> tuple[Array, bool]:
-    """Extend `grid` (R, C, 2) by whole rows and columns for as long as the board goes on.
+    """Extend the corners `grid` (R, C, 2) by whole rows and columns, at most to `most`, as far as the board goes on.
 
     Returns
     -------
@@ -177,7 +175,7 @@ def refined(picture: Picture, corners: Array, half: int) -> Array:
 
 
 def oriented(picture: Picture, grid: Array, columns: int, rows: int) -> Array:
-    """Turn `grid` (R, C, 2) to (rows, columns) in the order that :class:`Checkerboard` promises."""
+    """Turn corners `grid` (R, C, 2) to `rows` × `columns`, right-handed, and black square first if possible."""
     ways = [way for way in _turns(grid) if way.shape[:2] == (rows, columns) and right_handed(way)]
     black = [way for way in ways if first_is_black(picture, way)]
     return min(black or ways, key=lambda way: float(way[0, 0].sum()))

@@ -23,7 +23,7 @@ def detect(
     thorough: bool = True,
     plane_only: bool = False,
 ) -> TargetView:
-    """Find `target` in `picture` to sub-pixel.
+    """Find the points of `target` in `picture` (H, W) to sub-pixel; TargetNotFound if it is not seen.
 
     Parameters
     ----------

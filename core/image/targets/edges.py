@@ -55,7 +55,7 @@ class PictureSpline:
         self._coefficients = spline_filter(part.astype(np.float64), order=3, mode="mirror")
 
     def at(self, uv: Array) -> Array:
-        """Interpolate grey levels at `uv` (…, 2) in px of the whole picture; NaN outside the part."""
+        """Interpolate grey levels at `uv` (…, 2) in px of the whole picture; NaN beyond the spline's part."""
         local = uv - self._origin
         inside = ((local >= 0) & (local <= self._limits)).all(axis=-1)
         levels = map_coordinates(
@@ -65,7 +65,7 @@ class PictureSpline:
 
 
 def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float) -> Profiles:
-    """Sample grey profiles through `uv` (K, 2) along unit vectors `normal` (K, 2); these point from dark to bright."""
+    """Measure grey profiles through `uv` (K, 2) along unit vectors `normal` (K, 2), from dark to bright."""
     half = round(half_width / STEP)
     t = np.arange(-half - _REACH, half + _REACH + 1) * STEP
     levels = spline.at(uv[:, None, :] + t[None, :, None] * normal[:, None, :])
@@ -110,7 +110,7 @@ class Line:
 
     @property
     def tangent(self) -> Array:
-        """Unit vector along the line."""
+        """Unit vector (2,) along the line."""
         return np.array([-self.normal[1], self.normal[0]])
 
 

@@ -149,7 +149,7 @@ class BlackSquare:
 
     @property
     def points(self) -> Array:
-        """The four corners (4, 3) in mm."""
+        """The four corners (4, 3) of the square in mm."""
         s = self.side_mm
         return np.array([[0.0, 0.0, 0.0], [s, 0.0, 0.0], [s, s, 0.0], [0.0, s, 0.0]])
 

@@ -20,7 +20,7 @@ _FAINTEST = {np.dtype(np.uint8): 8, np.dtype(np.uint16): 128}
 
 
 def check_exposure(picture: Picture, name: str) -> None:
-    """Check that a picture (H, W) is neither all black nor all white, nor of one grey.
+    """Raise TargetNotFound if a picture (H, W) is all black, all white or of one grey level.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def grey_range(picture: Picture) -> tuple[float, float]:
 
 
 def level_quantiles(levels: Picture, *shares: float) -> list[float]:
-    """Compute the quantiles of grey `levels` of any shape, as :func:`numpy.quantile`; by counting, for many pixels."""
+    """Compute the quantiles `shares` of grey `levels` of any shape, by counting, for many pixels."""
     upto = np.cumsum(np.bincount(levels.ravel()))
     quantiles: list[float] = []
     for share in shares:
@@ -77,10 +77,7 @@ def level_quantiles(levels: Picture, *shares: float) -> list[float]:
 
 
 def as_8bit(picture: Picture) -> NDArray[np.uint8]:
-    """Convert a picture (H, W) to 8 bit, stretched to the full range if it is 16 bit or dark.
-
-    A good 8-bit one stays.
-    """
+    """Convert a picture (H, W) to 8 bit, stretched to the full range unless it is a bright 8-bit one already."""
     low, high = grey_range(picture)
     if picture.dtype == np.uint8 and high >= 128:
         return picture
@@ -89,15 +86,12 @@ def as_8bit(picture: Picture) -> NDArray[np.uint8]:
 
 
 def as_refinable(picture: Picture) -> Picture:
-    """Convert a picture (H, W) to a type that OpenCV's corner refinement takes, grey levels unchanged."""
+    """Convert a picture (H, W) to a pixel type that OpenCV's corner refinement takes; grey levels stay."""
     return picture if picture.dtype == np.uint8 else picture.astype(np.float32)
 
 
 def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8], int]:
-    """Reduce the picture by a whole factor, so that its longer side is at most about `longest`.
-
-    Also give the factor.
-    """
+    """Reduce a picture by a whole factor to a longer side of about `longest` px; returns it and the factor."""
     factor = max(1, round(max(picture.shape) / longest))
     if factor == 1:
         return picture, 1
@@ -107,7 +101,7 @@ def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8]
 
 
 def resized(picture: NDArray[np.uint8], factor: float) -> tuple[NDArray[np.uint8], float]:
-    """Reduce the picture by about `factor`, or enlarge it if that is below one; also give the exact factor."""
+    """Resize a picture to 1 / `factor` of its size, rounded to whole px; returns it and `factor`."""
     rows, columns = (max(1, round(side / factor)) for side in picture.shape)
     way = cv2.INTER_AREA if factor > 1 else cv2.INTER_CUBIC
     small = picture if factor == 1 else cv2.resize(picture, (columns, rows), interpolation=way)
@@ -123,7 +117,7 @@ def enlarged(uv: Array, factor: float) -> Array:
 
 
 def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
-    """Remove bright lines narrower than `width` px by grey opening; dark shapes keep their outline."""
+    """Remove bright lines narrower than `width` px from a picture by grey opening; dark shapes keep their outline."""
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
     return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
 

@@ -64,9 +64,7 @@ def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
 
 
 def followed_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure by how many px the target of `view` moved from `before` to `after`, (H, W) each.
-
-    Each mark is followed alone.
+    """Measure how many px the target's marks moved between pictures, each followed alone; None if few are.
 
     The median length of the marks' displacements (Lucas & Kanade, in the pyramid of J.-Y. Bouguet, 2000): far quicker
     than finding the target anew, for movements of a few pixels. A grid that moved by just its spacing looks unmoved
@@ -95,14 +93,13 @@ def _followed(one: Picture, other: Picture, points: NDArray[np.float32], window:
 
 
 def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure by how many px the target of `view` moved from `before` to `after`, (H, W) each.
+    """Measure how many px the target's picture moved from `before` to `after` as a whole; None if unclear.
 
-    It is not found in `after`.
-
-    The shift under which most pixels at the target's edges look alike in both pictures, refined by robust least
-    squares on the slopes (B. D. Lucas, T. Kanade, An iterative image registration technique, IJCAI 1981) together with
-    a change of brightness. An edge under a laser line looks different and loses its weight; the others tell. None
-    where too little looks alike, as after a movement much farther than FARTHEST_PX.
+    The target is not searched in `after`. The shift is the one under which most pixels at the target's edges look alike
+    in both pictures, refined by robust least squares on the slopes (B. D. Lucas, T. Kanade, An iterative image
+    registration technique, IJCAI 1981) together with a change of brightness. An edge under a laser line looks different
+    and loses its weight; the others tell. None where too little looks alike, as after a movement much farther than
+    FARTHEST_PX.
     """
     low = np.floor(view.uv.min(axis=0) - 4 * BLUR).astype(int).clip(0)
     high = np.ceil(view.uv.max(axis=0) + 4 * BLUR).astype(int) + 1

@@ -53,7 +53,7 @@ class TargetView:
             set_field(self, "covariance", frozen_array(self.covariance, (2 * count, 2 * count), "covariance"))
 
     def whitened(self, values: Array) -> Array:
-        """Whiten pixel `values` (N, 2, …) of the points to 2N independent numbers of unit variance, (2N, …)."""
+        """Divide `values` (N, 2, …) in px by the points' uncertainty, to (2N, …) of unit variance."""
         stacked = values.reshape(2 * len(self.uv), *values.shape[2:])
         if self.covariance is None:
             scale = np.repeat(self.sigma, 2).reshape(-1, *(1,) * (stacked.ndim - 1))

@@ -71,7 +71,7 @@ class CutModel(NamedTuple):
 
 @inlined(fastmath=True)
 def cut_model(run: Array, light: Light, near: int, upright: bool) -> CutModel:
-    """Make the model of the cut at point `near` of a `run` (N, 5) of this `light`."""
+    """Model the light on the pixel row or (if `upright`) column that cuts a `run` (N, 5) at point `near`."""
     model, noise = light.sections, light.noise
     height, width, background = model[near, 0], model[near, 1], model[near, 2]
     across, slip = (run[near, 2], -run[near, 3]) if upright else (run[near, 3], run[near, 2])

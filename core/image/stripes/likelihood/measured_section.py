@@ -82,7 +82,7 @@ def add_departures(
     part: tuple[int, int, int],
     sums: Array,
 ) -> None:
-    """Add to `sums` (GROUPS, 3, BINS) how a stripe departs from its Gaussian: Σ A·r, Σ A², Σ A²·d.
+    """Add to `sums` (GROUPS, 3, BINS) what a Gaussian section leaves of a stripe's grey levels: Σ A·r, Σ A², Σ A²·d.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def add_departures(
 
 @compiled()
 def departs(sums: Array) -> bool:
-    """Whether stripes surely depart from a Gaussian, alike on both sides, by `sums` (GROUPS, 3, BINS)."""
+    """Whether the mean section of stripes surely is no Gaussian, by the `sums` of `add_departures`."""
     found = 0
     for k in range(round((_SEEN - _JUDGED) * _BINS_PER_SIGMA), BINS // 2):
         light, weight = 0.0, 0.0
@@ -184,11 +184,11 @@ class Section:
     _known: dict[int, Weights] = field(default_factory=dict)
 
     def weights(self, height: float) -> Weights:
-        """Compute the optimal weights for a section of this height in grey levels, within a factor of 1.16."""
+        """Compute the optimal weights of pixels across a stripe of about this height in grey levels."""
         return self._of_level(round(math.log(max(height, 1e-3)) / _HEIGHT_CLASS))
 
     def weights_along(self, height: Array) -> tuple[NDArray[np.int64], list[Weights]]:
-        """Choose for each of some heights (N,) one of a few weights; returns its index, and these weights."""
+        """Compute optimal weights of pixels for some stripe heights: index (N,) of each, and the weights."""
         levels, kind = np.unique(np.round(np.log(np.maximum(height, 1e-3)) / _HEIGHT_CLASS), return_inverse=True)
         return kind.astype(np.int64), [self._of_level(int(level)) for level in levels]
 
@@ -198,13 +198,13 @@ class Section:
         return self._known[level]
 
     def variance_by(self, psi: Array, height: float) -> float:
-        """Compute the variance of the place in px² for 1 px of stripe, if pixels are weighted by `psi` (S,)."""
+        """Compute the variance in px² of the place of 1 px of stripe whose pixels `psi` (S,) weights."""
         derivative, covariance, strip = self._model(height)
         return float(psi @ covariance @ psi) / (strip * float(psi @ derivative)) ** 2
 
     @property
     def tables(self) -> NDArray[np.float32]:
-        """Value and push at the places of the tables, (2, PLACES)."""
+        """Tables (2, PLACES) of the section f(d) and of its negative derivative −f'(d) across the stripe."""
         return np.stack([self.value, self.push]).astype(np.float32)
 
     def _model(self, height: float) -> tuple[Array, Array, float]:
@@ -243,14 +243,14 @@ class Section:
 
 
 def gaussian_section(surroundings: Surroundings) -> Section:
-    """Make the Gaussian section that others are compared with."""
+    """Make the Gaussian section exp(−d²/2), with which measured sections are compared."""
     d = _places()
     value = np.exp(-0.5 * d * d)
     return Section(value, d * value, surroundings)
 
 
 def section_from(sums: Array, surroundings: Surroundings) -> Section | None:
-    """Compute the section from `sums` (3, BINS) of `add_departures`; None if too little of it is seen."""
+    """Fit the mean section of stripes to the `sums` (3, BINS) of `add_departures`; None if too little of it is seen."""
     light, weight, moment = sums
     judged = np.abs(np.arange(BINS) + 0.5 - BINS / 2) < _JUDGED * _BINS_PER_SIGMA
     if np.count_nonzero(weight[judged]) < _LEAST_SEEN * np.count_nonzero(judged):

@@ -110,7 +110,7 @@ def refine(
     speckle: Speckle,
     filter_px: float,
 ) -> Refined:
-    """Move the points of a stripe to its likeliest place, by the pixels of each cut.
+    """Move the points of a stripe to its likeliest place, by the pixels of rows or columns that cut it.
 
     Parameters
     ----------
@@ -180,9 +180,10 @@ def residuals(
     curve: Array,
     sections: Sections,
 ) -> Array:
-    """Compute residuals of the pixels near the crest, and the model's light there: (2, K, W) of K cuts.
+    """Compute measured − modelled light of the W pixels near the crest in K cuts, and the model: (2, K, W).
 
-    Zeros where a pixel cannot be used. The other arguments are those of `refine`.
+    A cut is a row or column of W pixels across the stripe. Zeros where a pixel cannot be used. The other arguments are
+    those of `refine`.
     """
     half = max(2, int(_CORE * median(sections.width)))
     cuts = cuts_of(curve, arc_length(curve))
@@ -214,10 +215,9 @@ def _height_levels(height: Array) -> NDArray[np.int64]:
 
 @compiled(inline=True)
 def cuts_of(run: Array, arc: Array) -> Array:
-    """Find where rows or columns of the picture cut a `run` (N, ≥ 4).
+    """Find where rows or columns of the picture cut a `run` (N, ≥ 4) of line points: (K, 5) in order along the run.
 
-    (K, 5), in order along the run: length along it; number of the row (column); the place in it; the nearest point;
-    1 for a row.
+    Length along it; number of the row (column); the place in it; the nearest point; 1 for a row.
     """
     cuts = new_table(2 * len(run) + 8, 5)
     count = 0
@@ -244,7 +244,7 @@ def cuts_of(run: Array, arc: Array) -> Array:
 def cut_residuals(
     picture: Picture, state: NDArray[np.uint8], run: Array, cuts: Array, model: Array, half: int
 ) -> Array:
-    """Compute residuals of the middle 2·`half` + 1 pixels of each cut, and the model's light there, (2, K, W)."""
+    """Compute measured − modelled light of the middle 2·`half` + 1 pixels of K cuts, and the model: (2, K, W)."""
     found = np.zeros((2, len(cuts), 2 * half + 1))
     for c in range(len(cuts)):
         line, place, near, upright = int(cuts[c, 1]), cuts[c, 2], int(cuts[c, 3]), cuts[c, 4] > 0
@@ -267,7 +267,7 @@ def cut_residuals(
 
 @inlined()
 def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
-    """Average the scores at each point: (N, 3) offset t in px, its variance in px², weight of all cuts it rests on.
+    """Average the scores of cuts about each point: (N, 3) offset in px, its variance in px², total weight.
 
     The offset is that of a straight line through the window's cuts: a window cut short has its middle elsewhere. It is
     as smooth as the window, so it is worked out at some points and lies on cubics between them

@@ -74,7 +74,7 @@ def score_cuts(
     clear: NDArray[np.bool_],
     light: Light,
 ) -> Array:
-    """Compute Σ ψ·(I − model) and Σ ψ·d of each cut of a `run` (N, 5): (K, 2), zeros where it cannot be used."""
+    """Compute Σ ψ·(I − model) and Σ ψ·d over the pixels of K cuts of a `run` (N, 5): (K, 2), 0 if unusable."""
     model, sums, longest = light.sections, zero_table(len(cuts), 2), max(picture.shape[0], picture.shape[1])
     block = _Block(
         new_indices(_CUTS_AT_ONCE),

@@ -25,17 +25,17 @@ _ROUNDING_PX = 3.0
 
 
 def longest_hole_px(filter_px: float) -> float:
-    """Compute the longest distance in px between neighbouring points of one line that nothing hides."""
+    """Compute the distance in px up to which neighbouring points count as one line without a hole."""
     return HOLD * filter_px + _ROUNDING_PX
 
 
 def unbroken_parts(
     lines: Sequence[Array], keep: Sequence[NDArray[np.bool_]], own: int, filter_px: float, state: NDArray[np.uint8]
 ) -> list[NDArray[np.intp] | slice]:
-    """Select the points to keep of the line `own` among `lines`, those of each unbroken part together.
+    """Select the points of line `own` that `keep` has, one array or slice for each part without a hole.
 
     `lines` are the runs (N, ≥ 4) of all lines of the picture, `keep` (N,) which of their points are to be kept; the
-    others may cross this one. `state` (H, W) are the bits of the picture's pixels.
+    others may cross this one. `state` (H, W) are the bits of the picture's pixels. What hides a line makes no hole.
     """
     run, kept = lines[own], np.flatnonzero(keep[own])
     ends = _suspects(run, kept, longest_hole_px(filter_px))

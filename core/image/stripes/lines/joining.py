@@ -52,7 +52,7 @@ class _Gap:
 
 
 def joined_at_crossings(pieces: list[Piece], filter_px: float) -> tuple[list[Piece], list[Array]]:
-    """Join the pieces of one line on either side of a crossing; also give the bridges across the gaps of each.
+    """Join the pieces of lines that others cross; also give, for each, the points that bridge its gaps.
 
     Bridges are points (M, 4) u, v, n_u, n_v in no order, none for a piece that was whole.
     """
@@ -152,10 +152,7 @@ def _crosses_light(gap: _Gap, gaps: list[_Gap], pieces: list[Piece], hole: float
 
 
 def crosses(bridge: Array, line: Array, hole: float) -> bool:
-    """Whether a line (M, ≥ 2) passes from one side of a nearly straight `bridge` to the other.
-
-    Gaps up to `hole` px are passed.
-    """
+    """Whether a line (M, ≥ 2) passes from one side of a straight `bridge` to the other in steps below `hole` px."""
     start, chord = bridge[0, :2], bridge[-1, :2] - bridge[0, :2]
     x = line[:, :2] - start
     along, across = x @ chord / (chord @ chord), x @ np.array([chord[1], -chord[0]])

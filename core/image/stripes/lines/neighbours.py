@@ -17,7 +17,7 @@ _BOXED = 32  # points that share a bounding box; chosen by speed
 
 
 def distances_to_neighbours(runs: list[Array], bridges: list[Array], touching: float, reach: float) -> list[Array]:
-    """Compute the distance in px (N,) of each point of each run from another run beside or across it.
+    """Compute for each point of each run (N, ≥ 4) its distance (N,) in px to the nearest other run beside or across it.
 
     Infinite beyond `reach`.
 

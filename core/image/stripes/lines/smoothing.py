@@ -51,7 +51,7 @@ _LEAST_SIDE = 0.3  # of its half length that a window must have on either side
 
 
 def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Centreline:
-    """Smooth a centreline: move its points along their normals onto local parabolas, and give them the σ of those.
+    """Smooth a centreline: move its points along their normals onto locally fitted parabolas, with the σ of those fits.
 
     Normals, widths and strengths stay. `correlation_px` grows by as much as the variances fall, for a mean along the
     line gains nothing by it; saturated points have no weight but are moved like the others.

@@ -15,7 +15,7 @@ _AT_ONCE = 32  # pixels tested in one instruction, if a loop has as many rounds
 
 @inlined()
 def bits_within(state: NDArray[np.uint8], left: int, right: int, top: int, bottom: int) -> int:
-    """Collect the bits set in columns `left` … `right` − 1 and rows `top` … `bottom` − 1, perhaps some columns more."""
+    """Combine by OR the bits of pixels in these columns and rows, ends left out; some columns more may be in."""
     bits, last = np.uint8(0), state.shape[1] - _AT_ONCE
     for j in range(top, bottom):
         row = state[j]

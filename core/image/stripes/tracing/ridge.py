@@ -37,7 +37,7 @@ class Detector(NamedTuple):
 
 
 def kernel_radius(filter_px: float) -> int:
-    """Compute the half width of the kernels in pixels."""
+    """Compute the half width in px of the derivative kernels of a Gaussian filter of σ `filter_px`."""
     return math.ceil(KERNEL_REACH * filter_px)
 
 
