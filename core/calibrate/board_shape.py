@@ -48,7 +48,7 @@ Target = Literal["camera_target", "plane_target"]
 
 
 def size_assumed(target: Target, scale_sd: float) -> Message:
-    """Note the standard uncertainty that is assumed for the size of a target, as a share of it."""
+    """Note the relative standard uncertainty `scale_sd` that is assumed of the size of a `target`."""
     return note_of("target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=scale_sd * 1e3)
 
 
@@ -94,7 +94,7 @@ class BoardTolerance:
             )
 
     def notes(self, target: Target, *, shape_known: bool = False) -> tuple[Message, ...]:
-        """Note what is assumed of a target of which rig.toml says nothing, if the step of that `target` depends on it.
+        """Note the size and flatness assumed of this `target`, where rig.toml states none; () where nothing is assumed.
 
         A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
         that not where its shape is known from them. That the plane target's size is assumed is told by the fact
@@ -120,14 +120,14 @@ class BoardTolerance:
 
     @property
     def sd(self) -> Array:
-        """Standard deviations (4,) of the shape's parameters before any view is seen; 0 where they are known."""
+        """Prior standard deviations (4,) of the board's shape parameters; 0 for those taken as known."""
         flatness = self.flatness_sd_mm
         aspect = self.size_sd * np.sqrt(2)  # the difference of two independent sizes
         return np.array([flatness, flatness, flatness, aspect])
 
     @property
     def free(self) -> NDArray[np.intp]:
-        """Indices of the parameters that are unknown."""
+        """Indices of the board's shape parameters that are to be estimated: those whose prior is not 0."""
         return np.flatnonzero(self.sd)
 
 
@@ -152,13 +152,13 @@ class Board:
 
     @classmethod
     def of(cls, points: Sequence[Array]) -> Board:
-        """Make the board on which all of `points`, (N, 3) in each view, are."""
+        """Make the board that just holds all target `points` (N, 3) of several views, in mm."""
         joined = np.concatenate(points)[:, :2]
         low, high = joined.min(axis=0), joined.max(axis=0)
         return cls((low + high) / 2, np.maximum((high - low) / 2, 1e-9))
 
     def changes(self, points: Array) -> Array:
-        """Compute ∂(x, y, z)/∂(shape) of flat `points` (N, 3): (N, 3, 4)."""
+        """Compute the derivatives (N, 3, 4) of flat board `points` (N, 3) by the four shape parameters."""
         off = points[:, :2] - self.middle
         x, y = (off / self.half).T
         derivative = np.zeros((len(points), 3, 4))
@@ -167,7 +167,7 @@ class Board:
         return derivative
 
     def shaped(self, points: Array, values: Array) -> Array:
-        """Move flat `points` (N, 3) to where a board of a shape of these `values` (4,) has them."""
+        """Move flat board `points` (N, 3) in mm by the shape parameters `values` (4,): bow and size."""
         return np.asarray(points + self.changes(points) @ values, dtype=np.float64)
 
 
@@ -182,19 +182,19 @@ class BoardShape:
 
     @property
     def sd(self) -> Array:
-        """Standard deviations (4,) of the shape's parameters."""
+        """Standard deviations (4,) of the board's estimated shape parameters."""
         return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance), 0)), dtype=np.float64)
 
     @property
     def departure_mm(self) -> float:
-        """Largest less smallest z in mm over the board, its corners included."""
+        """Range of z in mm over the bowed board, its corners included; 0 if it is flat."""
         grid = np.linspace(-1, 1, 21)
         x, y = (axis.ravel() for axis in np.meshgrid(grid, grid))
         return float(np.ptp(self.values[0] * x * x + self.values[1] * y * y + self.values[2] * x * y))
 
     @property
     def surely_bowed(self) -> bool:
-        """Whether the board is bowed by more than noise makes of a flat one."""
+        """Whether the board's bow is larger than its estimated covariance explains by chance."""
         bow = self.values[:3]
         if not bow.any():
             return False
@@ -202,5 +202,5 @@ class BoardShape:
         return chance < SURE
 
     def shaped(self, points: Array) -> Array:
-        """Move flat `points` (N, 3) to where this board has them."""
+        """Move the points (N, 3) of a flat board in mm to where this bowed board has them."""
         return self.board.shaped(points, self.values)

@@ -86,7 +86,7 @@ class Stability:
             raise ValueError(f"a stability is a number not below 0: {self}")
 
     def times(self, turn: float, shift: float, centre: float, focal: float) -> Stability:
-        """Multiply each standard uncertainty by its factor."""
+        """Multiply the standard uncertainties of turn, shift, centre and focal length each by its own factor."""
         return Stability(turn * self.turn, shift * self.shift_mm, centre * self.centre_px, focal * self.focal_share)
 
     @property
@@ -95,7 +95,7 @@ class Stability:
 
     @property
     def over_default(self) -> Array:
-        """Standard deviation (9,) of each of `changes`, which are as large as the default's."""
+        """Ratios (9,) of these standard uncertainties to the default ones, in the order of `changes`."""
         share = np.array(self._each) / np.array(DEFAULT_STABILITY._each)
         return np.asarray(share[[0, 0, 0, 1, 1, 1, 2, 2, 3]], dtype=np.float64)
 
@@ -117,12 +117,12 @@ class RigSpread:
 
     @property
     def stability(self) -> Stability:
-        """Default stability times the factor."""
+        """Default standard uncertainties of a rig's change, times the factor estimated from its checks."""
         return DEFAULT_STABILITY.times(*[self.factor] * 4)
 
 
 def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
-    """Make the nine changes of a rig that are considered, each one standard deviation of the default stability large.
+    """Make nine deviations of a rig, each changed in one way by one default standard uncertainty.
 
     Three turns of the fan about the laser and three shifts of it, two shifts of the picture, and the focal length.
     """
@@ -142,7 +142,7 @@ def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
 
 
 def displaced_fan(fan: Fan, turn: Array, pivot: Array, shift_mm: Array | None = None) -> Fan:
-    """Turn the fan by the rotation vector `turn` (3,) in rad about `pivot` (3,) in mm, and then shift it (3,)."""
+    """Turn a fan by the vector `turn` (3,) in rad about `pivot` (3,) in mm, and then shift it by `shift_mm`."""
     rotation = Rotation.from_rotvec(turn).as_matrix()
     moved = pivot if shift_mm is None else pivot + shift_mm
     planes = []
@@ -166,7 +166,7 @@ class Evidence:
 
     @classmethod
     def none(cls, count: int) -> Self:
-        """Make the evidence of no pictures about so many deviations."""
+        """Make normal equations of `count` deviations that no picture has contributed to: all zero."""
         return cls(np.zeros((count, count)), np.zeros((count, count)), np.zeros(count))
 
     def __add__(self, other: Evidence) -> Evidence:
@@ -212,12 +212,12 @@ class Change:
 
     @property
     def surely(self) -> bool:
-        """Whether camera or laser surely differ from their calibration: no measured value then proves conformity."""
+        """Whether camera or laser surely differ from their calibration, beyond chance."""
         return self.p < PROVES_NOTHING
 
     @property
     def seemingly(self) -> bool:
-        """Whether camera or laser seem to differ, and no check of the day is in order, which proves nothing either.
+        """Whether camera or laser seem to differ from their calibration, and no check of the day has passed.
 
         Who has no passed check has only the scan to go by, which sees little of most changes: what shows in it at all
         may be far larger than U allows for.
@@ -226,7 +226,7 @@ class Change:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Note if something has surely changed, and on pictures that carry no information."""
+        """Notes that the rig has surely changed, and on check pictures that tell nothing; () if neither."""
         return (*self._changed, *self.left_out)
 
     @property
@@ -242,7 +242,7 @@ class Change:
 def stability_in_use(
     stated: Stability | None, charted: RigSpread | None, assumed: Stability = DEFAULT_STABILITY
 ) -> tuple[Stability, Source]:
-    """Choose the stability to use, and the source of the uncertainty by it: `assumed` where neither other is known."""
+    """Choose the rig's stability, and the name of its source: `charted` by checks, else `stated`, else `assumed`."""
     if charted is not None:
         return charted.stability, "charted change"
     return (assumed, "assumed change") if stated is None else (stated, "change")
@@ -257,12 +257,11 @@ def judge(
     charted: RigSpread | None = None,
     assumed: Stability = DEFAULT_STABILITY,
 ) -> Change:
-    """Estimate what has changed, from all evidence of the K `deviations`.
+    """Estimate what has changed of a rig since its calibration, from the normal equations `evidence` of its pictures.
 
-    Those of the calibrations first, then the nine `changes`.
-
-    `camera` and `fan` are those calibrated. The stability is that by the rig's checks, `charted`, where they say it;
-    else that `stated`, else that `assumed`; what change adds says so.
+    The K `deviations` are first those of the calibrations, then the nine `changes`. `camera` and `fan` are those
+    calibrated. The stability is that by the rig's checks, `charted`, where they say it; else that `stated`, else that
+    `assumed`; what change adds says so.
     """
     stability, source_of_change = stability_in_use(stated, charted, assumed)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
@@ -284,13 +283,13 @@ def judge(
 
 
 def agrees(deviations: Sequence[Deviation], evidence: Evidence) -> bool:
-    """Whether pictures that carry information about a rig's changes agree with its calibrations."""
+    """Whether pictures, by their normal equations, agree with a rig's calibrations; False if they tell nothing."""
     squares, freedom = _squares(evidence, np.array([one.source == "change" for one in deviations], dtype=np.bool_))
     return freedom > 0 and _by_chance(squares, freedom) >= P_TOLD
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:
-    """Estimate x̂ (K,) and C (K, K) of the deviations from all evidence; 0 for those that cannot change."""
+    """Estimate the K deviations of a rig, (K,), with their covariance (K, K); 0 for those that cannot change."""
     x, estimate, root = _lasting(deviations, evidence, stability)
     everywhere, square = np.zeros(len(x)), np.zeros((len(x), len(x)))
     everywhere[x], square[np.ix_(x, x)] = estimate, root @ root.T

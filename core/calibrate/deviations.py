@@ -61,7 +61,7 @@ class Deviation:
 
 
 def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tuple[Deviation, ...]:
-    """Make pairs of camera and fan, each displaced by one standard uncertainty along one principal direction.
+    """Make deviations of camera and fan: each moved by one standard uncertainty along a principal axis of covariance.
 
     Let q be anything measured with a camera and a fan, and q₀ the same with the calibrated ones. Then, to first order,
     Σ (q − q₀)² over all deviations is the variance of q from the calibrations, and the sums over those of one `source`
@@ -91,14 +91,14 @@ def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tu
 
 
 def fan_behind(fan: FanCalibration, calibrated: Camera, camera: Camera) -> Fan:
-    """Compute the fan that the same pictures give with `camera` in place of the `calibrated` one, to first order."""
+    """Compute the fan that its pictures give with `camera` in place of the `calibrated` one, to first order."""
     if fan.by_camera is None:
         return fan.fan
     return moved_fan(fan.fan, fan.by_camera @ (parameters_of(camera) - parameters_of(calibrated)))
 
 
 def moved_fan(fan: Fan, change: Array) -> Fan:
-    """Add `change` (3N,) in 1/mm to the stacked π of `fan`."""
+    """Add a `change` (3N,) in 1/mm to the vectors π of the fan's N light planes."""
     return Fan(tuple(LightPlane(pi) for pi in fan.pis + change.reshape(-1, 3)), fan.covariance)
 
 

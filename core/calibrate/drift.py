@@ -45,7 +45,7 @@ class Drift:
     per_hour: Stability = STABLE
 
     def over(self, apart: Apart) -> Stability:
-        """Compute the stability for a difference of temperature and time."""
+        """Compute how far a rig may drift over a difference of temperature and time (standard uncertainties)."""
         kelvins, hours = [apart.kelvins] * 4, [apart.hours] * 4
         return together(self.per_kelvin.times(*kelvins), self.per_hour.times(*hours))
 
@@ -74,7 +74,7 @@ class Apart:
 
 
 def apart(one: float | None, other: float | None, hours: float | None, usual_kelvins: float) -> Apart:
-    """Compute the difference of two temperatures in °C and times, with the usual one for what is not stated."""
+    """Compute how far two states of a rig lie apart in kelvins and `hours`, with usual values for what is None."""
     unknown = one is None or other is None
     return Apart(
         usual_kelvins if one is None or other is None else abs(one - other),
@@ -85,7 +85,7 @@ def apart(one: float | None, other: float | None, hours: float | None, usual_kel
 
 
 def together(*parts: Stability) -> Stability:
-    """Add independent changes in quadrature, each a standard uncertainty."""
+    """Add independent standard uncertainties of a rig's change in quadrature."""
     return Stability(
         math.hypot(*(one.turn for one in parts)),
         math.hypot(*(one.shift_mm for one in parts)),
@@ -95,10 +95,7 @@ def together(*parts: Stability) -> Stability:
 
 
 def stability_after(stated: Stability | None, drift: Drift, since: Apart) -> Stability | None:
-    """Compute how far a rig may have changed `since` its calibration.
-
-    None where nothing is stated and the default applies.
-    """
+    """Compute how far a rig may have changed `since` its calibration; None where the default applies."""
     if drift != NO_DRIFT:
         return together(DEFAULT_STABILITY if stated is None else stated, drift.over(since))
     if stated is not None or since.kelvins_assumed or since.kelvins <= USUAL_KELVINS:
@@ -107,7 +104,7 @@ def stability_after(stated: Stability | None, drift: Drift, since: Apart) -> Sta
 
 
 def widened_evidence(evidence: Evidence, deviations: Sequence[Deviation], since: Stability) -> Evidence:
-    """Widen the evidence of the K `deviations` by how much the rig may have changed `since` the pictures were taken."""
+    """Weaken the normal equations `evidence` by how much the rig may have changed since its pictures were taken."""
     if since == STABLE:
         return evidence
     variance = np.zeros(len(deviations))

@@ -31,11 +31,11 @@ class Limit:
 
     @property
     def poor(self) -> float:
-        """Value below which the grade is poor."""
+        """Value below which the grade is poor, a share of `good`."""
         return POOR_SHARE * self.good
 
     def grade(self, value: float) -> Grade:
-        """Grade a value, in the unit of the limit."""
+        """Grade a value, the larger the better, as good, fair or poor by this limit."""
         if value >= self.good:
             return Grade.GOOD
         return Grade.FAIR if value >= self.poor else Grade.POOR

@@ -32,10 +32,10 @@ class Linearised(Protocol):
 
     @property
     def cost(self) -> float:
-        """Sum of squares at the state."""
+        """Sum of squared residuals at the state that the equations are linearised about."""
 
     def step(self, damping: float) -> Array:
-        """Compute the local step (P,) to the minimum, with the diagonal raised by `damping` of itself."""
+        """Compute the step (P,) to the linearised minimum, the diagonal raised by `damping` of itself."""
 
 
 class DenseProblem:
@@ -80,7 +80,7 @@ def minimise(
     linearise: Callable[[State], Model],
     move: Callable[[State, Array], State],
 ) -> Solution[State, Model]:
-    """Minimise the sum of squared residuals.
+    """Minimise a sum of squared residuals by Levenberg and Marquardt's method, from `state`.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ def readjusted(
     pictures: CheckPictures,
     stability: Stability | None,
 ) -> tuple[CameraCalibration, FanCalibration]:
-    """Move camera and fan to where a check has them.
+    """Compute camera and fan re-adjusted to the pictures of an interim check; InputError where that is not justified.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def _vector(one: Deviation) -> Array:
 
 
 def nothing_changed(p: float) -> InputError | None:
-    """Give the reason why a rig whose check has this p is not re-adjusted; None if it may be."""
+    """Make the error that a check of probability `p` shows no change to adjust to; None if it shows one."""
     if p < P_TOLD:
         return None
     return _refused(

@@ -80,12 +80,12 @@ class CameraCalibration:
 
     @property
     def sd(self) -> Mapping[str, float]:
-        """Standard deviation of each parameter by name."""
+        """Standard deviation of each camera parameter, by its name."""
         return {name: float(max(self.covariance[i, i], 0.0) ** 0.5) for i, name in enumerate(CAMERA_PARAMETERS)}
 
     @property
     def ranked(self) -> tuple[ViewQuality, ...]:
-        """Views from the best-fitting to the worst, those left out last."""
+        """Views in the order of their RMS residual, the smallest first; those left out come last."""
         return tuple(sorted(self.views, key=lambda quality: (not quality.used, np.nan_to_num(quality.rms_px, nan=1e9))))
 
 
@@ -155,7 +155,7 @@ class Readjustment:
 
     @property
     def note(self) -> Message:
-        """Note on what is moved, by a proposal or by an accepted re-adjustment."""
+        """Note on how far a re-adjustment moves laser and picture, and on the agreement before and after it."""
         turn, shift, drift, focal = np.split(np.asarray(self.change), [3, 6, 8])
         return note_of(
             "fan.readjusted",
@@ -230,7 +230,7 @@ class FanCalibration:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """Notes, with one on the size of its target if that is assumed."""
+        """Notes of the calibration, with one that the target's size is assumed, if so."""
         unstated = self.scale_assumed is not False and self.scale_sd > 0
         size = (size_assumed("plane_target", self.scale_sd),) if unstated else ()
         return tuple(dict.fromkeys((*self.notes, *size)))
@@ -254,7 +254,7 @@ class FanCalibration:
         )
 
     def camera_used(self, given: CameraCalibration) -> CameraCalibration:
-        """Give the camera to use with this fan: the `given` calibration, corrected if the poses did so."""
+        """Return the camera to use with this fan: `given`, or as the fan's calibration has corrected it."""
         if self.camera is None or self.camera_covariance is None:
             return given
         return replace(given, camera=self.camera, covariance=self.camera_covariance)
@@ -285,6 +285,6 @@ class ProposedReadjustment:
 
     @property
     def record(self) -> Readjustment:
-        """Record of the re-adjustment if it is accepted."""
+        """Record of the proposed re-adjustment, as the fan states it."""
         assert self.fan.readjusted is not None
         return self.fan.readjusted

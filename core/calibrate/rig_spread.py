@@ -30,10 +30,7 @@ FACTORS = 2.0 ** (0.5 * np.arange(-8, 9))
 
 
 def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Array:
-    """Compute the logarithm (F,) of the likelihood of a check for each of `FACTORS`.
-
-    Its evidence is of the K `deviations`.
-    """
+    """Compute the log-likelihood (F,) of a check for each of FACTORS on the default stability."""
     of_change = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     sd = np.array([one.source != UNEXPLAINED for one in deviations], dtype=np.float64)
     likelihoods = []
@@ -48,7 +45,7 @@ def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Arra
 def stability_by_pictures(
     deviations: Sequence[Deviation], evidence: Evidence, guess: Stability = DEFAULT_STABILITY
 ) -> Stability:
-    """Estimate the stability to assume of a rig of which nothing is stated and no check of the day has passed.
+    """Estimate the stability of a rig from its scan's pictures, where none is stated and no check has passed.
 
     The default is known to a factor of two only, and a rig that has changed more than most shows a little of it in each
     scan. It is the default times the root of the mean square of t, given the pictures, and no less than the default:
@@ -61,9 +58,9 @@ def stability_by_pictures(
 
 
 def most_likely_factor(likelihoods: Array, about: float = 1.0) -> float:
-    """Estimate the factor from the likelihoods (n, F) of n checks by the mean of its logarithm.
+    """Estimate a rig's factor on the default stability from the log-likelihoods (n, F) of n checks.
 
-    `about` without information.
+    `about` is the guess before any check.
 
     Before any check it is within a factor of two of that (one standard deviation): default and statement are honest
     guesses.

@@ -26,11 +26,9 @@ class Acquisition:
 def hours_of_sitting(
     planes: Acquisition | None, scan: Acquisition | None, fresh_hours: float | None = None
 ) -> float | None:
-    """Compute the hours from the first picture to the last if both are of one sitting.
+    """Compute the hours from the first picture of planes and scan to the last; None if not of one sitting, or unknown.
 
-    None if not, or if that is not known.
-
-    That is within `fresh_hours`, where the rig's description states them.
+    Of one sitting are pictures of one camera within `fresh_hours`, or the usual hours where the rig states none.
     """
     if planes is None or scan is None or planes.camera != scan.camera:
         return None

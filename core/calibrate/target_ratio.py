@@ -50,11 +50,11 @@ class TargetRatio:
     fit_p: float
 
     def p(self, scale_sd: float) -> float:
-        """Compute the probability that chance puts sizes stated with this relative uncertainty so far apart."""
+        """Compute the probability that the ratio is by chance as far from 1, sizes stated within `scale_sd`."""
         return float(2 * ndtr(-abs(self.ratio - 1) / np.hypot(self.u, scale_sd)))
 
     def note(self, scale_sd: float, other: Message) -> Message:
-        """Note how the pictures' ratio agrees with the sizes stated; `other` names the other target."""
+        """Note whether the targets' ratio in the pictures agrees with the sizes stated; `other` is one's name."""
         if self.fit_p < NOT_FIXED:
             return note_of("target.not_fixed", n=self.pictures, other=other, p=self.fit_p)
         if self.p(scale_sd) >= P_TOLD:
@@ -72,7 +72,7 @@ class TargetRatio:
 
 
 def target_ratio(shown: Sequence[tuple[TargetView, TargetView]], camera: Camera) -> TargetRatio:
-    """Compute the ratio of sizes from N ≥ 1 pictures of two targets.
+    """Compute the ratio of the sizes of two targets, measured over stated, from N ≥ 1 pictures that show both.
 
     With several the plate is to be tilted or moved between them.
 

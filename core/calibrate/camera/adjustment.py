@@ -29,19 +29,19 @@ _SHAPE_SETTLED = 1e-4
 
 
 def free_parameters(options: CameraOptions) -> NDArray[np.intp]:
-    """Return the indices (F,) of the free parameters in CAMERA_PARAMETERS."""
+    """Return the indices (F,) in CAMERA_PARAMETERS of the parameters that these options leave to be solved for."""
     zero = options.fixed | ({"gamma"} if options.skew is False else set()) | (set() if options.k3 else {"k3"})
     return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
 
 
 def counted_observations(observed: Sequence[Observed], verdicts: Sequence[Verdict]) -> tuple[list[int], list[Observed]]:
-    """Select the views that are used, by their indices, and of each of them the corners that count."""
+    """Select the views that the `verdicts` use, as their indices and as their observations of the counted corners."""
     used = [i for i, verdict in enumerate(verdicts) if verdict.used]
     return used, [observed[i].select(verdicts[i].counted) for i in used]
 
 
 def solve_judged(start: Bundle, observed: Sequence[Observed], options: CameraOptions) -> tuple[Bundle, list[Verdict]]:
-    """Solve by least squares on the views and corners that count, judged again until the judgement stands."""
+    """Solve camera and poses by least squares, and judge views and corners by it, again until the judgement stays."""
     bundle = start
     verdicts = judge(residual_lengths(bundle, observed), [True] * len(observed), options.outliers)
     for _ in range(_MOST_JUDGEMENTS):
@@ -76,7 +76,11 @@ def with_shape(
     options: CameraOptions,
     tolerance: BoardTolerance,
 ) -> tuple[BoardFit, Bundle, list[Verdict]]:
-    """Solve for the board's shape beside the camera, from the solution with a `flat` board; judge the views again."""
+    """Solve for the board's shape beside the camera, from the solution for a `flat` board, and judge the views again.
+
+    Returns the board, the solution and the verdicts; those given where no shape is to be solved for, or too few views
+    are used.
+    """
     fit = BoardFit(Board.of([view.points for view in observed]), tolerance, np.zeros(len(SHAPE_PARAMETERS)))
     used, counted = counted_observations(observed, verdicts)
     if not len(fit.free) or len(used) < LEAST_VIEWS:
@@ -104,5 +108,5 @@ def with_shape(
 
 
 def freedom_of(counted: Sequence[Observed], free: NDArray[np.intp]) -> int:
-    """Count the observations less the unknowns of camera and poses."""
+    """Compute the degrees of freedom: two for each corner counted, less the `free` parameters and six for each pose."""
     return 2 * sum(len(view.points) for view in counted) - len(free) - 6 * len(counted)

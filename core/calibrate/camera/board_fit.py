@@ -34,11 +34,11 @@ class BoardFit:
 
     @property
     def free(self) -> NDArray[np.intp]:
-        """Indices of the shape's unknown parameters."""
+        """Indices of the board's shape parameters that are to be estimated."""
         return self.tolerance.free
 
     def shaped(self, flat: Sequence[Observed]) -> list[Observed]:
-        """Replace the points of views of a `flat` board by those of the board's shape."""
+        """Replace the target points in views of a `flat` board by those of the board with its present shape."""
         return [replace(view, points=self.board.shaped(view.points, self.values)) for view in flat]
 
     def _normal(self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp]) -> Normal:
@@ -49,7 +49,7 @@ class BoardFit:
     def covariance(
         self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp], freedom: int
     ) -> tuple[Array, SharedErrorFactors]:
-        """Compute the covariance of the camera's `free` parameters, followed by the shape's, and how it was widened.
+        """Compute the covariance of the camera's `free` and the board's parameters, and how it was widened.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class BoardFit:
         return free_covariance(normal, [view.points for view in flat], cells, freedom, precision)
 
     def shape(self, covariance: Array, camera_parameters: int) -> BoardShape:
-        """Make the shape with its part of a `covariance` (F + S, F + S), behind the camera's F parameters."""
+        """Make the board's shape, with the part of `covariance` (F + S, F + S) behind the camera's F parameters."""
         own = np.zeros((len(self.values), len(self.values)))
         own[np.ix_(self.free, self.free)] = covariance[camera_parameters:, camera_parameters:]
         return BoardShape(self.board, self.values, own)

@@ -63,7 +63,7 @@ class Bundle:
     poses: tuple[Pose, ...]
 
     def of_views(self, numbers: Sequence[int]) -> Bundle:
-        """Select the poses of these views, with the same camera."""
+        """Select the poses of the views with these indices, beside the same camera."""
         return Bundle(self.camera, tuple(self.poses[i] for i in numbers))
 
 
@@ -172,7 +172,7 @@ def _with_more_diagonal(matrices: Array, damping: float) -> Array:
 
 
 def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tolerance: float = 1e-12) -> Bundle:
-    """Minimise the weighted sum of squared residuals from `start`.
+    """Solve for camera and poses by least squares on weighted residuals, from `start`, to a relative `tolerance`.
 
     `free` are the indices (F,) of the camera's free parameters in CAMERA_PARAMETERS; none means that only the poses
     are found. Stops when a step gains less than `tolerance` of the cost.
@@ -198,7 +198,7 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
 
 
 def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Bundle:
-    """Minimise with Huber's weights about a scale from the median residual: a start among outliers for `refine`."""
+    """Solve for camera and poses with Huber's weights, which outliers do not spoil: a start for `refine`."""
 
     def improve(current: Bundle, weigh: Weigh) -> Bundle:
         lengths = residual_lengths(current, views)
@@ -213,12 +213,12 @@ def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.i
 
 
 def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
-    """Compute observed − predicted (N, 2) in pixels; infinite if a point is not in front of the camera."""
+    """Compute observed − projected corners (N, 2) of a view in px; infinite for a point behind the camera."""
     return _StackedViews.of([view]).residuals(Bundle(camera, (pose,)))
 
 
 def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
-    """Compute the lengths (N,) of the weighted residual vectors of every view, in pixels."""
+    """Compute for each view the lengths (N,) of its corners' residuals, times the root of their weights, in px."""
     return [
         np.linalg.norm(residuals(bundle.camera, pose, view), axis=1) * np.sqrt(view.weights)
         for pose, view in zip(bundle.poses, observed, strict=True)
@@ -228,7 +228,7 @@ def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array
 def normal_equations(
     bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp], target_changes: Sequence[Array] | None = None
 ) -> Normal:
-    """Compute the reduced normal equations at `bundle`.
+    """Compute the normal equations of the camera's `free` parameters at `bundle`, the poses eliminated.
 
     `target_changes`, (N, 3, B) for each view, are the derivatives of its target points by B further unknowns common to
     all views, which stand behind the camera's.

@@ -105,7 +105,7 @@ class CaptureJudge:
 
     @property
     def views(self) -> tuple[TargetView, ...]:
-        """The views taken so far."""
+        """Views of the target taken so far."""
         return tuple(view for view, _ in self._taken)
 
     @property
@@ -114,7 +114,7 @@ class CaptureJudge:
         return self._cells(np.concatenate([np.zeros((0, 2)), *(view.uv for view in self.views)]))
 
     def judge(self, view: TargetView | None, blur_px: float, time_s: float, why_not: Message | None = None) -> Verdict:
-        """Judge whether to take this view.
+        """Judge whether to take the `view` of a live picture now: the target is still, sharp, and adds to those taken.
 
         Parameters
         ----------
@@ -144,13 +144,13 @@ class CaptureJudge:
         return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there, of_no_use=True)
 
     def add_earlier(self, views: Iterable[TargetView]) -> None:
-        """Add the views of an earlier recording that is being continued; they cannot be deleted here."""
+        """Add the views of an earlier recording that is continued."""
         for view in views:
             nameless = TargetView(view.points, view.uv, view.sigma, "")
             self._taken.append((nameless, view_geometry(nameless, self._camera)))
 
     def record_taken(self, view: TargetView, time_s: float) -> None:
-        """Record that the view was taken, on this judgement or by hand."""
+        """Record that a view was taken at `time_s`, by this judge's verdict or by hand."""
         self._taken.append((view, view_geometry(view, self._camera)))
         self._taken_at = time_s
 
@@ -159,11 +159,11 @@ class CaptureJudge:
         self._taken = [(view, geometry) for view, geometry in self._taken if view.name != name]
 
     def missing(self) -> tuple[Message, ...]:
-        """Advise on what the views taken so far lack."""
+        """Advise what to record next, for what the views taken lack; () if they suffice."""
         return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size, self._series)
 
     def next_outline(self) -> Array | None:
-        """Outline (5, 2) in pixels, closed, of the target where it would add most; None if nothing is missing.
+        """Outline (5, 2) in px, closed, of the target in the view that would add most; None if none is wanted.
 
         Nor is anything wanted before a first view was taken.
         """

@@ -28,7 +28,7 @@ class ParameterChange:
 
     @property
     def unlikely(self) -> bool:
-        """Whether chance alone is unlikely to explain the change."""
+        """Whether the parameter's change is larger than the limit in its standard deviations."""
         return abs(self.change) > UNLIKELY * self.sd > 0
 
 
@@ -42,7 +42,7 @@ class CameraChanges:
 
 
 def camera_changes(first: CameraCalibration, second: CameraCalibration, progress: Progress = silent) -> CameraChanges:
-    """Compare two calibrations, parameter by parameter."""
+    """Compare two calibrations of a camera: each parameter, the RMS residuals and the views used."""
     progress("comparing", 0, 1)
     values, sds = [parameter_values(one) for one in (first, second)], [first.sd, second.sd]
     return CameraChanges(
@@ -56,7 +56,7 @@ def camera_changes(first: CameraCalibration, second: CameraCalibration, progress
 
 
 def parameter_values(calibration: CameraCalibration) -> tuple[float, ...]:
-    """List the parameters in the order of CAMERA_PARAMETERS."""
+    """List the values of the camera's parameters in the order of CAMERA_PARAMETERS."""
     matrix, distortion = calibration.camera.matrix, calibration.camera.distortion
     values = [matrix[0, 0], matrix[1, 1], matrix[0, 1], matrix[0, 2], matrix[1, 2], *distortion]
     return tuple(float(value) for value in values)

@@ -50,7 +50,7 @@ class SharedErrorFactors:
 
     @property
     def total(self) -> float:
-        """Factor that is applied: all are variances on top of the independent one."""
+        """Factor on the standard deviations for all shared errors together, whose variances add up."""
         return float(np.sqrt(self.within_views**2 + self.across_views**2 + self.over_picture**2 - 2))
 
 
@@ -61,7 +61,7 @@ def free_covariance(
     degrees_of_freedom: int,
     precision: Array | None = None,
 ) -> tuple[Array, SharedErrorFactors]:
-    """Compute the covariance (F, F) of the free parameters, widened for errors that corners share.
+    """Compute the covariance (F, F) of the camera's free parameters, and the factors of widening for shared errors.
 
     The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
     scatter more than independent corners would make them: for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)).
@@ -135,7 +135,7 @@ def _scatter(gradients: Array, inverse: Array) -> float:
 
 
 def principal_deviations(calibration: CameraCalibration) -> tuple[Camera, ...]:
-    """Make cameras one standard deviation off along each principal axis of the covariance.
+    """Make cameras displaced from a calibration by one standard deviation along each principal axis of its covariance.
 
     For any quantity f of the camera, Σ (f(deviated) − f(camera))² over them is its variance from the calibration, to
     first order. Axes are those of the correlation matrix, so that they do not depend on units; a fixed parameter

@@ -51,7 +51,7 @@ def covered_cells(uv: Array, image_size: tuple[int, int]) -> NDArray[np.bool_]:
 
 
 def coverage(uv: Array, image_size: tuple[int, int]) -> float:
-    """Compute the share (0 … 1) of the cells that hold a point of `uv` (N, 2), as `covered_cells`."""
+    """Compute the share (0 … 1) of the picture's cells, 8 in a row, that hold a point of `uv` (N, 2)."""
     return float(covered_cells(uv, image_size).mean())
 
 
@@ -62,13 +62,13 @@ def empty_regions(uv: Array, image_size: tuple[int, int], names: Sequence[Messag
 
 
 def tilt(pose: Pose) -> float:
-    """Compute the angle in rad between the target's normal and the optical axis, 0 to π/2."""
+    """Compute the angle in rad, 0 to π/2, between the normal of the target at `pose` and the camera's optical axis."""
     normal = pose.rotation[:, 2]
     return float(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
 
 
 def tilt_range(poses: Sequence[Pose]) -> float:
-    """Compute the largest angle in rad between the target's planes in two of the views."""
+    """Compute the largest angle in rad between the target's planes at any two of these `poses`."""
     normals = [pose.rotation[:, 2] for pose in poses]
     angles = [np.arctan2(np.linalg.norm(np.cross(a, b)), abs(a @ b)) for a, b in combinations(normals, 2)]
     return float(max(angles, default=0.0))

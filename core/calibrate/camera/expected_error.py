@@ -68,7 +68,7 @@ class ResidualField:
 def expected_error(
     calibration: CameraCalibration, depth_mm: float | None = None, grid: tuple[int, int] = GRID
 ) -> ExpectedError:
-    """Carry the camera's covariance to points at depth `depth_mm` (None: the middle of the corners' depths).
+    """Compute the standard uncertainty of points at depth `depth_mm` that the camera's covariance causes.
 
     The covariance's cameras are compared in the work volume: the pixels that corners lie around, between the nearest
     and the farthest corner. There a small rigid motion of the frame, fitted by least squares, takes out of every
@@ -112,7 +112,7 @@ def expected_error(
 
 
 def residual_field(calibration: CameraCalibration) -> ResidualField:
-    """Collect the corners used for the fit and their residuals."""
+    """Collect places, residuals and views of all corners that the calibration uses."""
     used = [(index, view) for index, view in enumerate(calibration.views) if view.used]
     if not used:
         return ResidualField(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
@@ -124,7 +124,7 @@ def residual_field(calibration: CameraCalibration) -> ResidualField:
 
 
 def corner_depths(calibration: CameraCalibration) -> Array:
-    """Compute depths z in mm of the corners used for the fit."""
+    """Compute the depths z in mm, in the camera frame, of all corners that the calibration uses."""
     depths = [view.pose.apply(view.view.points[view.counted])[:, 2] for view in calibration.views if view.used]
     return np.concatenate(depths) if depths else np.zeros(0)
 

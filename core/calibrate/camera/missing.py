@@ -83,7 +83,7 @@ class ViewGeometry:
 
 
 def typical_camera(image_size: tuple[int, int]) -> Camera:
-    """Make a typical camera, to estimate tilts as long as the true one is not known."""
+    """Make a camera of typical focal length without distortion, to estimate tilts before the true one is known."""
     width, height = image_size
     focal = _USUAL_FOCAL * max(width, height)
     return Camera(
@@ -92,7 +92,7 @@ def typical_camera(image_size: tuple[int, int]) -> Camera:
 
 
 def view_geometry(view: TargetView, camera: Camera) -> ViewGeometry | None:
-    """Estimate the geometry of `view`; None if no pose explains it."""
+    """Estimate normal, distance and pose of the target in `view`; None if no pose explains its points."""
     try:
         pose = estimate_pose(view, camera).pose
     except (TargetNotFound, ValueError):
@@ -118,7 +118,7 @@ def missing_from(
     image_size: tuple[int, int],
     series: Series = CAMERA_VIEWS,
 ) -> tuple[Message, ...]:
-    """Advise as `what_is_missing`, from geometries that are known already."""
+    """Advise in at most four sentences what to record next, by the views' known `geometries`; () if enough."""
     wanted = {"enough": series.enough, "pictures": series.pictures}
     if not views:
         return (Message("advice.record_first", "Record at least {enough} {pictures}; there is none.", **wanted),)

@@ -39,7 +39,7 @@ class PictureResiduals:
 
 
 def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
-    """Judge the residuals in pixels of all corners that count."""
+    """Judge whether the corners' residuals have a pattern over the picture, or along its radii."""
     field, camera = residual_field(calibration), calibration.camera
     sigma = np.concatenate([view.view.sigma[view.counted] for view in calibration.views if view.used])
     cell = over_picture(field.uv, camera.image_size, GRID)
@@ -52,7 +52,7 @@ def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
 
 
 def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
-    """Note what is wrong with the residuals, and in which direction."""
+    """Note a pattern of the corners' residuals over the picture, and its direction; () if there is none."""
     found = judge_picture(calibration)
     bad = _bad_fit(calibration.rms_px, found.over_picture.times)
     notes = [] if bad is None else [bad]
@@ -64,7 +64,7 @@ def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
 
 
 def bad_fit(calibration: CameraCalibration) -> Message | None:
-    """Complain of a calibration whose corners fit badly; None if they fit."""
+    """Make the complaint about a calibration whose corners have too large residuals; None if they fit."""
     return _bad_fit(calibration.rms_px, judge_picture(calibration).over_picture.times)
 
 
@@ -108,7 +108,7 @@ _OUTWARDS, _INWARDS = Message("camera.outwards", "outwards"), Message("camera.in
 
 
 def direction_of(u: float, v: float) -> Message:
-    """Name the direction in the picture in which (u, v) points."""
+    """Name the direction in the picture in which (u, v) points: right, left, up or down."""
     if abs(u) > abs(v):
         return Message("camera.to_the_right", "to the right") if u > 0 else Message("camera.to_the_left", "to the left")
     return Message("camera.downwards", "downwards") if v > 0 else Message("camera.upwards", "upwards")

@@ -40,20 +40,20 @@ _LEAST_HALVED = 6
 
 
 def fitted_view(view: TargetView, camera: Camera, pose: Pose, verdict: Verdict, board: BoardShape) -> ViewQuality:
-    """Compute how `view` of a `board` fits `camera` at `pose`."""
+    """Compute residuals and RMS in px of a `view`, for this `camera`, `pose` of the target and shape of the board."""
     errors = view.uv - camera.project_pose(pose, board.shaped(view.points))
     rms, mean = rms_and_mean(errors[verdict.counted])
     return ViewQuality(view, pose, errors, rms, mean, tilt(pose), verdict.used, verdict.exclusion, verdict.counted)
 
 
 def unfitted_view(view: TargetView, exclusion: Reason) -> ViewQuality:
-    """Make the quality of a view without a pose."""
+    """Make the entry of a view that has no pose and is left out for the reason `exclusion`."""
     nowhere, none = np.full(view.uv.shape, np.nan), np.zeros(len(view.uv), dtype=np.bool_)
     return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, exclusion, none)
 
 
 def view_without_part(view: TargetView, camera: Camera, exclusion: Exclusion, board: BoardShape) -> ViewQuality:
-    """Compute how a view that had no part in calibrating `camera` fits it at its best pose.
+    """Compute residuals in px of a view left out of the calibration, at the pose that fits it best.
 
     A view that does not even look like the target has no pose; why is added to the `exclusion`.
     """
@@ -75,7 +75,7 @@ def view_qualities(
     fits: Mapping[int, tuple[Pose, Verdict]],
     board: BoardShape,
 ) -> tuple[ViewQuality, ...]:
-    """Compute the quality of all `views`; `fits` has pose and verdict by index, `reasons` those of the others."""
+    """List residuals and verdict of all `views`: by `fits` of their index, or left out for one of the `reasons`."""
     return tuple(
         fitted_view(view, camera, *fits[index], board) if index in fits else unfitted_view(view, reasons[index])
         for index, view in enumerate(views)
@@ -89,7 +89,7 @@ def rms_and_mean(errors: Array) -> tuple[float, float]:
 
 
 def cross_validation_mm(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> float:
-    """Compute the RMS distance in mm between what cameras solved from odd and from even views see in the work volume.
+    """Compute the RMS distance in mm between points by two cameras, one solved from even views, one from odd ones.
 
     The volume is what the corners' part of the picture sees between the nearest and the farthest corner. With half
     the views each, the two differ by about twice the standard uncertainty of the camera from all. NaN with fewer
@@ -104,7 +104,7 @@ def cross_validation_mm(solved: Bundle, counted: Sequence[Observed], free: NDArr
 
 
 def notes_on(calibration: CameraCalibration, widening: SharedErrorFactors) -> tuple[Message, ...]:
-    """Make notes on views and corners left out, missing coverage, small tilt, few views and correlated residuals."""
+    """Note views and corners left out, poor coverage, small tilts, few views, correlated residuals; () if none."""
     used = [quality for quality in calibration.views if quality.used]
     notes = [
         note_of("camera.view_left_out", view=_name(quality), reason=quality.reason)

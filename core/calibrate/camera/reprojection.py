@@ -28,12 +28,12 @@ def camera_of(parameters: Array, image_size: tuple[int, int]) -> Camera:
 
 
 def moved(pose: Pose, step: Array) -> Pose:
-    """Change a pose by a small step (6,): rotation vector in rad, then shift in mm."""
+    """Apply a small `step` (6,), a rotation vector in rad and a shift in mm, in front of a pose."""
     return all_moved([pose], step[None])[0]
 
 
 def all_moved(poses: Sequence[Pose], steps: Array) -> tuple[Pose, ...]:
-    """Change each of V poses by its own of small `steps` (V, 6), as `moved` does."""
+    """Apply to each of V poses its own of the small `steps` (V, 6): rotation vector in rad, shift in mm."""
     turns = Rotation.from_rotvec(steps[:, :3]).as_matrix()
     return tuple(
         Pose(turn @ pose.rotation, pose.translation + step[3:])
@@ -42,7 +42,7 @@ def all_moved(poses: Sequence[Pose], steps: Array) -> tuple[Pose, ...]:
 
 
 def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, Array]:
-    """Project `points` (N, 3), with derivatives.
+    """Project target `points` (N, 3) in mm at a `pose` to pixels, with derivatives by camera and pose.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
 
 
 def linearise_turned(camera: Camera, turned: Array, position: Array) -> tuple[Array, Array, Array]:
-    """Project points (N, 3) that are turned but not yet shifted by their poses to `position` (N, 3), with derivatives.
+    """Project target points at `position` (N, 3) to pixels, with derivatives by the camera and by their poses.
 
     The poses may be many: what each changes is what it does to its own points.
     """
@@ -80,7 +80,7 @@ def linearise_turned(camera: Camera, turned: Array, position: Array) -> tuple[Ar
 
 
 def ray_changes(camera: Camera, rays: Array) -> Array:
-    """Compute ∂(x, y)/∂camera (N, 2, 10) of `rays` (N, 3) at fixed pixels."""
+    """Compute the derivatives (N, 2, 10) of ray coordinates x, y by the camera's parameters, the pixels held fixed."""
     distorted = camera.distort(rays[:, :2])
     by_camera = np.concatenate([_by_matrix(distorted), camera.matrix[:2, :2] @ _by_distortion(rays[:, :2])], axis=2)
     return np.asarray(-camera.ray_jacobian(rays) @ by_camera, dtype=np.float64)

@@ -51,7 +51,7 @@ class Verdict(Excludable):
 
 
 def screen(view: TargetView) -> Array | Message:
-    """Fit the homography (3, 3) of `view`, or give the reason why it is no view of a flat target."""
+    """Fit the homography (3, 3) of `view`, or return the reason why its points are no view of a flat target."""
     if len(view.points) < LEAST_CORNERS:
         return Message(
             "camera.few_corners",
@@ -75,7 +75,9 @@ def screen(view: TargetView) -> Array | Message:
 
 
 def judge(lengths: Sequence[Array], used: Sequence[bool], outliers: Outliers) -> list[Verdict]:
-    """Judge views with weighted residual vectors of these `lengths` (N,), in pixels of a typical corner.
+    """Decide for each view whether it is used, and which corners count, by the `lengths` (N,) of its residuals in px.
+
+    They are weighted to pixels of a typical corner.
 
     A view is compared by its median with the median of those that are `used` so far, so that single corners neither
     condemn nor save it. `outliers` says which corners to leave out: "keep" none (and no view); "gross" those that

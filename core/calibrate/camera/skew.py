@@ -38,7 +38,7 @@ MANY_ERRORS = 2.0
 
 
 def skew_helps(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> bool:
-    """Whether views left out fit a camera with skew better than one without, both `solved` from the other views.
+    """Whether a camera with skew predicts views left out of its fit better than one without skew.
 
     `free` are the free parameters with the skew among them. A left-out view's pose is fitted to all its corners, for
     nothing else can tell it; what is compared is the mean square of its residuals, view by view, relative to that

@@ -60,7 +60,7 @@ class ThirdRadial:
 
     @property
     def note(self) -> Message:
-        """Note that k3 is solved for, and its effect."""
+        """Note that the third radial coefficient k3 is solved for, and its effect."""
         return note_of(
             "camera.third_radial",
             gain=self.gain,
@@ -72,9 +72,7 @@ class ThirdRadial:
 
 
 def third_radial(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> ThirdRadial | None:
-    """Compute the effect of k3 on a camera `solved` without it from `counted` views.
-
-    None where it does not surely help.
+    """Compute how the third radial coefficient k3 improves a camera `solved` without it; None where it does not.
 
     `free` are the free parameters, without k3. None also with fewer than FEWEST_VIEWS views, or where the picture would
     have no ray at its border.
@@ -101,7 +99,7 @@ def third_radial(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.i
 
 
 def left_out_misfits(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> Array:
-    """Compute χ² (V,) of each view before the camera of all others, in units of the weights.
+    """Compute χ² (V,) of the residuals of each view for the camera solved from all other views.
 
     `solved` is from all of them.
 

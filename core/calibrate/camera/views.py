@@ -46,7 +46,7 @@ class SeenViews:
 
     @property
     def found(self) -> tuple[TargetView, ...]:
-        """Targets that were found."""
+        """Views of the target in the pictures where it was found."""
         return tuple(one.view for one in self.views if one.view is not None)
 
     @property
@@ -68,7 +68,7 @@ class RecalledCamera:
 
 
 def recovered_views(calibration: CameraCalibration, where: str) -> SeenViews:
-    """Recover the views that `calibration` was made from, so that it can be solved again without the pictures."""
+    """Make the views that a stored `calibration` was solved from, so that it can be solved again without pictures."""
     size = calibration.camera.image_size
     return SeenViews(
         tuple(
@@ -101,7 +101,10 @@ def judge_views(
     calibration: CameraCalibration | None = None,
     progress: Progress = silent,
 ) -> ViewsJudgement:
-    """Judge the views of `seen` that are not `excluded`; with their `calibration`, those that it uses."""
+    """Judge which parts of the picture the views of `seen` cover and what they lack; by `calibration`, if there is one.
+
+    Views named in `excluded` are left out; with a calibration, all that it does not use.
+    """
     progress("judging the views", 0, 1)
     if calibration is not None:
         used = [quality for quality in calibration.views if quality.used]

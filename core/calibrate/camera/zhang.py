@@ -54,7 +54,7 @@ def homography(points: Array, uv: Array) -> Array:
 
 
 def homography_misfit(matrix: Array, points: Array, uv: Array) -> Array:
-    """Compute distances (N,) in pixels between `uv` and where `matrix` takes the target points (N, 2)."""
+    """Compute distances (N,) in px between image points `uv` (N, 2) and target `points` (N, 2) mapped by `matrix`."""
     lifted = np.column_stack([points, np.ones(len(points))]) @ matrix.T
     with np.errstate(divide="ignore", invalid="ignore"):
         distances: Array = np.linalg.norm(lifted[:, :2] / lifted[:, 2:] - uv, axis=1)
@@ -62,7 +62,7 @@ def homography_misfit(matrix: Array, points: Array, uv: Array) -> Array:
 
 
 def intrinsic_matrix(homographies: Sequence[Array], image_size: tuple[int, int], skew: bool) -> Array | None:
-    """Compute A (3, 3) from the image of the absolute conic (Zhang §3.1), or None where the conic found is not one.
+    """Compute the camera matrix (3, 3) from homographies in closed form (Zhang §3.1); None where they allow none.
 
     Every homography gives two linear equations for B = A⁻ᵀ A⁻¹; without `skew` B₁₂ = 0 is one more.
     """
@@ -88,7 +88,7 @@ def intrinsic_matrix(homographies: Sequence[Array], image_size: tuple[int, int],
 
 
 def centred_matrix(homographies: Sequence[Array], image_size: tuple[int, int]) -> Array:
-    """Compute A (3, 3) with square pixels and the principal point in the picture's middle, the focal length fitted.
+    """Compute a camera matrix (3, 3) of square pixels and centred principal point, its focal length fitted.
 
     For views that do not carry the full closed form. Where they do not even give a focal length it is taken as the
     picture's width.
@@ -122,7 +122,7 @@ def pose_from_homography(matrix: Array, h: Array) -> Pose:
 
 
 def radial_start(matrix: Array, rays: Array, uv: Array, free: tuple[bool, bool]) -> tuple[float, float]:
-    """Estimate k1 and k2 by linear least squares (Zhang §3.3), a fixed one 0.
+    """Estimate the radial coefficients k1 and k2 by linear least squares (Zhang §3.3); 0 for one that is not `free`.
 
     `rays` (N, 2) are the undistorted x, y that the poses predict for the image points `uv` (N, 2).
     """

@@ -105,7 +105,7 @@ class Bundle:
 
     @property
     def extra_mm(self) -> float:
-        """Standard deviation in mm of a stripe's offset beyond its own noise."""
+        """Standard deviation in mm of a stripe's offset from its light plane, beyond its own noise."""
         return float(self.extra[0] / np.sqrt(2))
 
 
@@ -122,7 +122,7 @@ def solve(
     plate: Plate | None = None,
     rounds: int = ROUNDS,
 ) -> Bundle:
-    """Solve planes and poses together, from `planes` near the answer, robustly (Huber per stripe).
+    """Solve light planes and target poses together by robust least squares (Huber per stripe), from `planes`.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ class FanOptions:
 
     @property
     def bowed_shape(self) -> BoardShape | None:
-        """Shape of the target if the camera's calibration has found it bowed; else None."""
+        """Shape of the target if the camera's calibration has found it bowed; None if not."""
         return self.board if self.board is not None and self.board.values[:BOWS].any() else None
 
 
@@ -111,7 +111,7 @@ def fit_fan(
     excluded: Collection[str] = (),
     camera_covariance: Array | None = None,
 ) -> FanCalibration:
-    """Calibrate the fan from the features of its poses.
+    """Calibrate the fan of light planes from target points and stripes seen in its poses.
 
     Parameters
     ----------

@@ -65,14 +65,14 @@ class Difference:
 
     @property
     def note(self) -> Message:
-        """Note that the light planes differ between colour channels."""
+        """Note that the light planes differ between colour channels, and by how much."""
         return note_of("fan.channels_differ", channel=CHANNEL_NAMES[self.channel], mm=self.mm, times=self.times)
 
 
 def with_differences(
     calibration: FanCalibration, used: Bundle, located: Sequence[LocatedPose], camera: Camera, plate: Plate | None
 ) -> FanCalibration:
-    """Widen the calibration's covariance by how its planes differ between the pictures' channels, and note it.
+    """Widen the fan's covariance by differences of its planes between the pictures' colour channels, and note them.
 
     Parameters
     ----------

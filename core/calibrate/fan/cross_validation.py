@@ -66,12 +66,12 @@ class Predictions:
 
     @property
     def usual_mm(self) -> float:
-        """Median over the poses of the predictions' error, in mm."""
+        """Median over the poses, in mm, of the error of the stripes that the other poses predict."""
         return float(np.nanmedian(self.error_mm))
 
 
 def predict(used: Bundle, poses: Sequence[BundlePose], camera: Camera, plate: Plate | None = None) -> Predictions:
-    """Compute how well the light planes of the other poses predict each pose's stripes.
+    """Compute for each pose how far its stripes lie from light planes fitted to all other poses.
 
     Parameters
     ----------

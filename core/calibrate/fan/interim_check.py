@@ -63,14 +63,14 @@ class CheckedPose:
 
     @property
     def misses_fan(self) -> bool:
-        """Whether stripes are on the target, but none is where the calibration has the fan."""
+        """Whether the target shows stripes, but none near a calibrated light plane."""
         return not self.located.used and bool(self.located.lines)
 
 
 def check_poses(
     poses: Sequence[PoseFeatures], camera: Camera, fan: FanCalibration, deviations: Sequence[Deviation]
 ) -> tuple[tuple[CheckedPose, ...], Evidence]:
-    """Measure how far the stripes of P poses are from their calibrated places, and the evidence of that."""
+    """Measure how far the stripes of each pose are from the calibrated light planes; also their normal equations."""
     found = _as_noisy_as_all([_located(pose, camera, fan.fan) for pose in poses])
     checked, evidence = [], Evidence.none(len(deviations))
     for pose in found:
@@ -86,7 +86,7 @@ def check_poses(
 def step_errors(
     poses: Sequence[CheckedPose], camera: Camera, fan: Fan, deviations: Sequence[Deviation], step_mm: float
 ) -> Array:
-    """Compute by how many mm (K,) each deviation makes a step of `step_mm` on the target too high.
+    """Compute the mean error (K,) in mm that each deviation makes in the height of a step of `step_mm`.
 
     Where the fan meets it.
     """

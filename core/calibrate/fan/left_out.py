@@ -12,7 +12,7 @@ from core.messages import Message
 
 
 def note_on_left_out(poses: Sequence[PlanePose]) -> Message | None:
-    """Note which poses are left out, why, and how far off they are where that is known; None if all count."""
+    """Note which poses are left out and why, and how far off the planes they are if known; None if all count."""
     out = [
         Message("fan.pose_and_reason", "{pose} ({reason})", pose=pose.name, reason=pose.reason)
         if math.isnan(pose.rms_mm) or pose.exclusion is Exclusion.BY_HAND

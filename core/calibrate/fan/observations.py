@@ -57,7 +57,7 @@ class Plate:
 
     @classmethod
     def flat_within(cls, board: Board, flatness_mm: float) -> Plate:
-        """Make a plate whose edges may be off its plane by a standard deviation of `flatness_mm`."""
+        """Make a plate that may be bowed: its edges are off its plane by a standard deviation of `flatness_mm`."""
         return cls(board, np.zeros(BOWS), flatness_mm**2 * np.eye(BOWS))
 
     @property
@@ -131,17 +131,17 @@ class Observations:
         self.free, self.whiten = _whitening(camera_covariance)
 
     def camera(self, state: State) -> Camera:
-        """Make the camera of a state."""
+        """Make the camera that has the parameters of this `state`."""
         if not state.camera.any():
             return self.given
         return reprojection.camera_of(reprojection.parameters_of(self.given) + state.camera, self.given.image_size)
 
     def distances(self, state: State) -> Distances:
-        """Compute the distances of the stripes from the light planes."""
+        """Compute the distances of all stripes from their light planes at this `state`, with derivatives."""
         return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
 
     def linearise(self, state: State, trust: ObservationWeights) -> PoseEquations:
-        """Make the equations of all observations and priors, for the free unknowns."""
+        """Make the equations of all target points, stripes and priors at this `state`, for the free unknowns."""
         residuals, common, own = self.observed(state, trust)
         known = common.shape[1] - PARAMETERS
         prior, by_bow = self._known_of_bows(state, known)
@@ -156,13 +156,13 @@ class Observations:
         )
 
     def with_every_camera_parameter(self, state: State, trust: ObservationWeights) -> PoseEquations:
-        """Make the equations with no prior on the camera, all its parameters among the unknowns."""
+        """Make the equations at this `state` with all camera parameters as unknowns, and no prior on the camera."""
         residuals, common, own = self.observed(state, trust)
         prior, by_bow = self._known_of_bows(state, common.shape[1])
         return PoseEquations(residuals, common, own, self.rows_of_pose, (prior, by_bow))
 
     def observed(self, state: State, trust: ObservationWeights) -> tuple[Array, Array, Array]:
-        """Compute the residuals (M,) of target points and stripes in standard deviations.
+        """Compute the residuals (M,) of target points and stripes in standard deviations, and their derivatives.
 
         And their derivatives by the common unknowns (M, C) and by those of the pose each is of (M, 6).
         """
@@ -180,7 +180,7 @@ class Observations:
         )
 
     def expected_mm(self, state: State, trust: ObservationWeights) -> float:
-        """Compute the RMS in mm of stripes' offsets and slopes by noise alone; poses are by the target's points."""
+        """Compute the RMS in mm that noise alone makes of the stripes' offsets and slopes."""
         points, distances = self._target_points(state), self.distances(state)
         by_pose = [points[rows, 1:7] for rows in self.rows]
         covariance = np.array([inverse(own.T @ own) for own in by_pose])[self.stripes.pose_of]
@@ -224,7 +224,7 @@ class Observations:
         return np.asarray(whiten @ (state.bow - self.plate.bow), dtype=np.float64), rows
 
     def move(self, state: State, step: Array) -> State:
-        """Change a state by a `step` (P,) of the free unknowns."""
+        """Move a `state` by a `step` (P,) of all free unknowns, poses included."""
         first = state.planes.jacobian.shape[1]
         last = first + self.bows + len(self.free)
         steps: list[NDArray[np.float64]] = list(step[last:].reshape(-1, 6))
@@ -233,7 +233,7 @@ class Observations:
         return State(moved.planes, poses, moved.bow, moved.camera)
 
     def move_common(self, state: State, step: Array) -> State:
-        """Change a state by a `step` (C,) of the free unknowns that all poses have in common."""
+        """Move a `state` by a `step` (C,) of the free unknowns common to all poses; the poses stay."""
         first = state.planes.jacobian.shape[1]
         bow = state.bow + step[first : first + self.bows]
         camera = state.camera.copy()
@@ -241,7 +241,7 @@ class Observations:
         return State(state.planes.moved(step[:first]), state.poses, bow, camera)
 
     def shape(self, bow: Array, covariance: Array) -> BoardShape:
-        """Make the plate's shape with this bow (3 or 0,) and covariance (3, 3); flat where it was stated to be."""
+        """Make the plate's shape of a `bow` (3,) or (0,) and its `covariance`; flat where no plate may bow."""
         if self.plate is None:
             return BoardShape()
         values, own = np.zeros(len(SHAPE_PARAMETERS)), np.zeros((len(SHAPE_PARAMETERS), len(SHAPE_PARAMETERS)))

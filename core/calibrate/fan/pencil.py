@@ -27,14 +27,14 @@ class PlaneSet(Protocol):
 
     @property
     def pis(self) -> Array:
-        """All π, (N, 3) in 1/mm."""
+        """Vectors π (N, 3) in 1/mm of all light planes."""
 
     @property
     def jacobian(self) -> Array:
-        """∂(stacked π)/∂(local step), (3N, P)."""
+        """Derivatives (3N, P) of all light planes' π by a step of the P parameters."""
 
     def moved(self, step: Array) -> PlaneSet:
-        """Move the planes by a local step (P,)."""
+        """Move the light planes by a `step` (P,) of their parameters."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -117,7 +117,7 @@ class Pencil:
 
 
 def pencil_near(pis: Array, angle: float | None) -> Pencil:
-    """Find a pencil near N ≥ 2 planes, from which a fit can start.
+    """Find a pencil, planes through one axis, near N ≥ 2 light planes `pis`: a start for a fit.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class PointResiduals:
 
 
 def judge_points(located: Sequence[LocatedPose], bundle: Bundle) -> PointResiduals:
-    """Judge the used poses of those `located`, as `bundle` has solved them."""
+    """Judge whether the target points' residuals in the used poses follow a pattern over the picture or the target."""
     camera = bundle.camera
     views = [view for pose in located if pose.used and (view := pose.features.view) is not None]
     shaped = [bundle.shape.shaped(view.points) for view in views]
@@ -79,9 +79,7 @@ def judge_points(located: Sequence[LocatedPose], bundle: Bundle) -> PointResidua
 
 
 def points_off_alike(found: PointResiduals) -> bool | None:
-    """Whether points lie off alike in all poses, so far that U need not contain it.
-
-    None where too few poses seem to show it.
+    """Whether target points lie off alike in all poses; None where they seem to, in too few poses to tell from chance.
 
     Points that lie off by less than is told are not doubted, nor those that turned signs of the poses show as far off:
     U holds their scatter.
@@ -94,9 +92,7 @@ def points_off_alike(found: PointResiduals) -> bool | None:
 
 
 def notes_on_points(found: PointResiduals, poses: int) -> tuple[Message, ...]:
-    """Note what is wrong with the target's points, where and in which direction. Or that so many `poses` do not
-    tell.
-    """
+    """Note where target points lie off alike, and which way, or that too few `poses` can tell; () if all is well."""
     alike = points_off_alike(found)
     if alike is None:
         return (note_of("fan.points_not_judged", n=poses, least=ENOUGH_GROUPS),)

@@ -58,12 +58,12 @@ class PoseEquations:
         self._products = np.array([part.T @ part for part in parts])
 
     def by_first(self, count: int) -> PoseEquations:
-        """Restrict the equations to the first `count` common unknowns, the others taken as known."""
+        """Restrict the equations to the first `count` common unknowns; the other common unknowns are taken as known."""
         known = (self._known[0], self._known[1][:, :count])
         return PoseEquations(self.residuals, self.common[:, :count], self.own, self.rows, known)
 
     def step(self, damping: float) -> Array:
-        """Solve for the local step (C + 6P,), the common unknowns first."""
+        """Solve for the step (C + 6P,) of C common unknowns, then of P poses, with a Levenberg `damping`."""
         normal, gradient, followed = self._reduced(damping)
         common = -_solved(normal, gradient)
         own = -(followed[..., -1] + followed[..., :-1] @ common)
@@ -75,12 +75,12 @@ class PoseEquations:
         return inverse(self._reduced(0.0)[0])
 
     def followed_by(self, first: int) -> Array:
-        """Compute (first, C − first), how the first common unknowns follow a change of the others, all poses moving."""
+        """Compute how the first common unknowns follow a change of the others, (first, C − first), poses adjusted."""
         normal = self._reduced(0.0)[0]
         return np.asarray(-inverse(normal[:first, :first]) @ normal[:first, first:], dtype=np.float64)
 
     def leverages(self) -> Array:
-        """Compute the share (M,) of each residual that the fit takes up."""
+        """Compute the leverage (M,), 0 … 1, of each residual: the share of its error that the fit takes up."""
         inverse_own = np.array([inverse(products[:OWN, :OWN]) for products in self._products])
         covariance = self.covariance
         shares = np.zeros(len(self.residuals))
@@ -91,7 +91,7 @@ class PoseEquations:
         return shares
 
     def steps_without_each(self) -> Array:
-        """Compute the step (P, C) of the common unknowns that leaving out each pose would make, to first order."""
+        """Compute for each of P poses how leaving it out would move the C common unknowns, (P, C), to first order."""
         normal, gradient, _ = self._reduced(0.0)
         return np.array([-inverse(normal - part[:, :-1]) @ (gradient - part[:, -1]) for part in self._parts()])
 

@@ -29,7 +29,9 @@ _ACROSS = 1e-5
 
 
 def judge_lines(located: Sequence[LocatedPose], adjusted: Sequence[Pose], pis: Array, shape: BoardShape) -> Judgement:
-    """Judge the distances in mm of the used poses' stripes from the planes `pis` (N, 3), offset and slope taken out.
+    """Judge whether stripes on the target are bent alike: their distances in mm from straight lines on planes `pis`.
+
+    The distances are those of the used poses' stripes from the planes `pis` (N, 3), offset and slope taken out.
 
     `adjusted` are the poses of those `located` that are used, `shape` is the target's.
     """
@@ -76,16 +78,13 @@ def bends_of(points: Sequence[Array], distances: Sequence[Array], pis: Array) ->
 
 
 def off_planes_mm(points: Sequence[Array], bends: Array) -> float:
-    """Compute the RMS distance in mm of light with these `bends` (N, 3, 3) from its planes.
-
-    At points (n_k, 3) on each line.
-    """
+    """Compute the RMS distance in mm of light of these `bends` (N, 3, 3) from its planes, at `points` on each line."""
     off = [np.einsum("ni,ij,nj->n", own, form, own) for own, form in zip(points, bends, strict=True)]
     return float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
 
 
 def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
-    """Note what is wrong with the lines, and in which direction."""
+    """Note that the stripes are bent alike, and in which direction; () if they are straight."""
     if not judgement.systematic:
         return ()
     middle = judgement.profile[CELLS // 2]
@@ -100,7 +99,7 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
 
 
 def bow_or_bend(judgement: Judgement) -> Message:
-    """Note that stripes bend alike on a flat target, by this `judgement`, and that a bow is assumed as the reason."""
+    """Note that stripes bend alike, and that a bow of the target, not bent light, is assumed as the reason."""
     return note_of(
         "fan.bow_or_bend",
         mm=float(np.nanmax(judgement.profile) - np.nanmin(judgement.profile)),

@@ -65,7 +65,7 @@ class Stripes:
     def distances(
         self, planes: PlaneSet, poses: Sequence[Pose], camera_change: Array, bow: Array | None = None
     ) -> Distances:
-        """Compute the stripes' distances on a plate with this `bow` (3,).
+        """Compute the stripes' distances from their light planes, with derivatives, for a plate of this `bow` (3,).
 
         The camera has changed by `camera_change` (10,).
         """

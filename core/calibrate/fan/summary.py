@@ -46,7 +46,9 @@ def summarise(
     notes: Sequence[Message],
     flat: Bundle | None = None,
 ) -> FanCalibration:
-    """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front.
+    """Make the fan's calibration from a free fit, the fit in use, the verdict between them, and predictions.
+
+    The `notes` come in front of those made here.
 
     `foretold` is of the poses that are used. Where nothing but the stripes tells the target's bow, `flat` is the fit in
     use with a flat target.

@@ -56,7 +56,7 @@ class _Trial:
 
 
 def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constrained: Constrained) -> Verdict:
-    """Compare the free planes with a pencil.
+    """Decide whether the light planes are held to a pencil (one common axis), by how well the free ones fit it.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ class EvenPlate:
 
     @classmethod
     def of(cls, plate: NDArray[Any], view: TargetView, level: float) -> EvenPlate:
-        """Remove the marks from a picture (H, W) of a target without laser, with the grey `level` of the light plate.
+        """Remove the marks from a target's picture (H, W) without laser; `level` is the light plate's grey.
 
         The brightness about a pixel is the mean, a cell of the target wide, of what is not dark itself.
         """

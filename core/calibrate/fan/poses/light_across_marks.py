@@ -52,7 +52,7 @@ class WholeLight(NamedTuple):
     beside: NDArray[np.bool_]
 
     def with_measured_sigma(self, line: Centreline, filter_px: float) -> Centreline:
-        """Widen the σ of a line found here to that of the measured points alone: mirrored points add no information.
+        """Widen the σ of a line's points near filled-in pixels: what was copied there adds no information.
 
         With a share f of the filter σ `filter_px` on such pixels, the variance is 1 + 2 f times that of as many of its
         own: at a mark's edge, where half are, twice.
@@ -71,7 +71,7 @@ def across_marks(
     courses: Sequence[Array],
     stripe: StripeSettings,
 ) -> WholeLight:
-    """Fill what is `uneven` (H, W) of a `picture` (H, W) of light alone, about `courses` of stripes.
+    """Fill the parts `uneven` (H, W) of a `picture` (H, W) of laser light, along the stripes' `courses`.
 
     Courses are (N, 4) u, v, n_u, n_v, one px from point to point along the tangent (−n_v, n_u).
     """
@@ -95,7 +95,7 @@ def across_marks(
 
 
 def follows(line: Centreline, courses: Sequence[Array], stripe: StripeSettings) -> bool:
-    """Whether a line runs along one of the `courses`, and is more than a speck of noise beside it."""
+    """Whether a centreline runs along one of the `courses` (N, 4) of stripes: near it, and in its direction."""
     points = np.vstack(courses)
     away, nearest = cKDTree(points[:, :2]).query(line.uv)
     along = np.abs(np.einsum("ij,ij->i", line.normal, points[nearest, 2:4]))
@@ -103,7 +103,7 @@ def follows(line: Centreline, courses: Sequence[Array], stripe: StripeSettings) 
 
 
 def course_of(line: StripeLine, camera: Camera, sites: Sites) -> Array:
-    """Extend a line over the whole picture of some sites: (N, 4) u, v, n_u, n_v in their px, one px apart.
+    """Extend a stripe over the whole picture: points one px apart, (N, 4) u, v, n_u, n_v in px of the `sites`.
 
     Near its ends it is bent as where it was seen.
     """

@@ -78,7 +78,7 @@ class Assignment:
 def assign_lines(
     poses: Sequence[PoseLines], lines: int, angle: float | None, wider: Sequence[float] = WIDER
 ) -> Assignment:
-    """Find the `lines` light planes that explain the stripes of most poses.
+    """Find the `lines` light planes that explain the stripes of most poses, and which plane drew each stripe.
 
     Parameters
     ----------

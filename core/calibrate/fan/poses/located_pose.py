@@ -50,15 +50,15 @@ class LocatedPose(Excludable):
 
     @property
     def lines_left(self) -> tuple[StripeLine, ...]:
-        """Straight stripes that no fan line drew."""
+        """Straight stripes in the pose that are assigned to no line of the fan."""
         return tuple(line for line in self.lines if all(line is not stripe for stripe in self.stripes.values()))
 
     def left_out(self, exclusion: Reason) -> LocatedPose:
-        """Exclude the pose for this reason."""
+        """Mark the pose as not used, for the reason `exclusion`."""
         return replace(self, stripes={}, exclusion=exclusion)
 
     def as_lines(self, camera: Camera) -> PoseLines:
-        """Give the stripes and the target's plane for their assignment; no stripes if the pose is not used."""
+        """Return the straight stripes and the target's plane; no stripes if the pose is not used."""
         if not self.used or self.features.view is None:
             return PoseLines((), np.zeros(3), np.zeros((3, 3)), np.zeros((0, 3)))
         covariance = target_plane_covariance(self.features.view, self.pose, camera)
@@ -66,7 +66,7 @@ class LocatedPose(Excludable):
 
 
 def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
-    """Estimate the pose of the target and the straight lines among its stripes, or the reason why there are none."""
+    """Estimate where the target is and which of its stripes are straight; a pose that cannot be used says why."""
     nowhere = LocatedPose(features, Pose.identity(), np.nan, (), exclusion=features.exclusion)
     if not features.used or features.view is None:
         return nowhere

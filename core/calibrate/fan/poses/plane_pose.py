@@ -95,7 +95,7 @@ def measure_plane_pose(
     margin_mm: float | None = None,
     beside: ExtraPictures = NOTHING,
 ) -> PoseFeatures:
-    """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
+    """Find the target's points and the laser's stripes in the pictures of one pose; one that cannot be used says why.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def measure_plane_pose(
 
 
 def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:
-    """Compute the ridge strength (H, W) of the laser's light for such a stripe, in grey levels of its height."""
+    """Compute for each pixel (H, W) the height in grey levels of the laser stripe there, with `off` subtracted."""
     light = on.astype(np.float32)
     return ridge_strength(light if off is None else light - off.astype(np.float32), settings)
 

@@ -62,7 +62,7 @@ class Plate:
         self._homography = homography_of(self._rays(view.uv), view.points[:, :2])
 
     def contains(self, uv: Array, room: float = 0.0) -> NDArray[np.bool_]:
-        """Mask (N,) of the points (N, 2) in pixels that are on the plate; `room` widens it by a share of its margin."""
+        """Flag the points `uv` (N, 2) in px that lie on the plate, (N,); `room` widens it by a share of its margin."""
         if self._homography is None:
             return np.ones(len(uv), dtype=bool)
         places = map_by(self._homography, self._rays(uv))
@@ -70,10 +70,7 @@ class Plate:
         return np.asarray(((places > self._low - reach) & (places < self._high + reach)).all(axis=1))
 
     def outside(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Mask (H, W), True where a picture of this shape shows other things than the plate.
-
-        Some px around it are left out.
-        """
+        """Flag the pixels (H, W) that do not show the plate, or lie within some px of its edge."""
         rows, columns = (size // SPACING + 2 for size in shape)
         places = SPACING * np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
         within = self.contains(places.astype(np.float64), ROOM).reshape(rows, columns).astype(np.uint8)
@@ -99,10 +96,7 @@ def _printed(target: Target) -> tuple[tuple[Array, Array], float]:
 
 
 def without_clutter(centrelines: Sequence[Centreline], camera: Camera | None) -> tuple[Centreline, ...]:
-    """Select the centrelines that a laser may have drawn on a flat plate of even brightness.
-
-    What most of the light has in common counts: its height and width. With a camera, lines have to be straight as well.
-    """
+    """Select the centrelines like most of the light in height and width, with a `camera` also straight ones."""
     if not centrelines:
         return ()
     height = np.array([np.median(line.strength) for line in centrelines])

@@ -65,12 +65,12 @@ class PoseFeatures(Excludable):
 
 
 def usual_stripe(poses: Iterable[PoseFeatures]) -> StripeSettings | None:
-    """Compute width and contrast of the typical stripe of some poses; None where none was found."""
+    """Compute the typical width and contrast of the stripes in some poses; None where there are none."""
     return usual_of([line for pose in poses for line in pose.centrelines])
 
 
 def usual_of(lines: Sequence[Centreline]) -> StripeSettings | None:
-    """Compute width and contrast of the typical one of some stripes; None for none."""
+    """Compute the typical width and contrast of some centrelines; None where there are none."""
     if not lines:
         return None
     width = float(np.median(np.concatenate([line.width for line in lines])))

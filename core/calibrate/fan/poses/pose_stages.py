@@ -49,7 +49,7 @@ class PoseStages:
 
 
 def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = None) -> tuple[NumberedStripe, ...]:
-    """Number the straight stripes of a pose; without a fan, or where the target was not found, they have no numbers."""
+    """List the straight stripes of a pose with the fan line that drew each; NOT_SEEN without `fan` or target."""
     located = locate(features, camera)
     if features.view is None or not located.lines:
         return tuple(NumberedStripe(piece.uv, NOT_SEEN) for piece in features.centrelines)
@@ -58,7 +58,7 @@ def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = N
 
 
 def line_numbers(stripes: Sequence[StripeLine], pose: Pose, fan: Fan) -> list[int]:
-    """Find the fan line that drew each stripe, or NOT_SEEN.
+    """Find for each stripe the index of the fan line that drew it, the nearest light plane, or NOT_SEEN.
 
     Each plane takes the stripe that is nearest to it, the best-fitting pair first.
     """

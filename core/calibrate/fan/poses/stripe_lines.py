@@ -88,7 +88,7 @@ def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int
 
 
 def chunk_length(centrelines: Sequence[Centreline]) -> int:
-    """Choose how many points are judged as one piece: fewer where the centrelines hold no more than a short line."""
+    """Choose how many neighbouring points of a stripe are judged as one piece; fewer where there are few points."""
     if sum(map(len, centrelines)) >= CHUNKS * CHUNK:
         return CHUNK
     correlation = min((line.correlation_px for line in centrelines), default=np.inf)

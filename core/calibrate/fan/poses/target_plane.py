@@ -12,15 +12,12 @@ from core.model.arrays import Array
 
 
 def target_plane(pose: Pose) -> Array:
-    """Compute τ (3,) in 1/mm of the target's plane z = 0: τ·X = 1 on it."""
+    """Compute the vector τ (3,) in 1/mm of the target's plane at `pose`: τ·X = 1 for points X on it."""
     return target_plane_changes(pose)[0]
 
 
 def on_target(rays: Array, pose: Pose, shape: BoardShape | None = None) -> Array:
-    """Compute the points (N, 3) in mm where `rays` (N, 3) meet a target at `pose`.
-
-    On its plane, or a surface of this `shape`.
-    """
+    """Compute the points (N, 3) in mm where `rays` (N, 3) meet the target at `pose`, flat or of this `shape`."""
     plane = target_plane(pose)
     flat: Array = rays / (rays @ plane)[:, None]
     if shape is None or not shape.values.any():
@@ -31,7 +28,7 @@ def on_target(rays: Array, pose: Pose, shape: BoardShape | None = None) -> Array
 
 
 def target_plane_changes(pose: Pose) -> tuple[Array, Array]:
-    """Compute τ (3,) and its derivative (3, 6) by a small turn in front of the pose and a shift."""
+    """Compute τ (3,) of the target's plane, τ·X = 1, and its derivative (3, 6) by turn and shift of the pose."""
     normal = pose.rotation[:, 2]
     distance = float(normal @ pose.translation)
     # column i is e_i × normal: what a small turn about axis i adds to the normal
@@ -43,7 +40,7 @@ def target_plane_changes(pose: Pose) -> tuple[Array, Array]:
 
 
 def target_plane_covariance(view: TargetView, pose: Pose, camera: Camera) -> Array:
-    """Compute the covariance (3, 3) of τ from the stated uncertainty of the target's points."""
+    """Compute the covariance (3, 3) in 1/mm² of τ of the target's plane from that of its points."""
     _, _, by_pose = reprojection.linearise(camera, pose, view.points)
     scaled = view.whitened(by_pose)
     by_step = target_plane_changes(pose)[1]
