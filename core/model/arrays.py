@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> Array:
-    """Make a read-only float64 copy of `values`, its shape checked (None: any length).
+    """Copy `values` to a read-only float64 array, checked to have this `shape`; None in it stands for any length.
 
     Raises
     ------
@@ -40,11 +40,11 @@ def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) ->
 
 
 def set_field(instance: object, name: str, value: Any) -> None:
-    """Set a field of a frozen dataclass from its own ``__post_init__``."""
+    """Set the field `name` of a frozen dataclass to `value`, from its own ``__post_init__``."""
     object.__setattr__(instance, name, value)
 
 
 def runs_of(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Find first index, and one past the last, of every unbroken run of True in `chosen` (N,)."""
+    """Find the unbroken runs of True in `chosen` (N,): for each the first index, and one past the last."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -92,7 +92,7 @@ class Camera:
         return float(np.sqrt(self.matrix[0, 0] * self.matrix[1, 1]))
 
     def scaled(self, factor: float) -> Camera:
-        """Scale the camera to pictures resized by `factor`, pixel edges kept in place."""
+        """Make the camera of pictures resized by `factor`, their pixel edges kept in place."""
         width, height = self.image_size
         matrix = self.matrix.copy()
         matrix[:2] *= factor
@@ -114,7 +114,7 @@ class Camera:
         return distorted @ self.matrix[:2, :2].T + self.matrix[:2, 2]
 
     def distort(self, xy: Array) -> Array:
-        """Distort ray coordinates `xy` (N, 2)."""
+        """Apply the lens distortion to undistorted ray coordinates `xy` (N, 2), x/z and y/z."""
         k1, k2, p1, p2, k3 = self.distortion
         x, y = xy[:, 0], xy[:, 1]
         r2 = x * x + y * y
@@ -127,7 +127,7 @@ class Camera:
         )
 
     def distort_jacobian(self, xy: Array) -> Array:
-        """Compute ∂(distorted)/∂(undistorted) at `xy` (N, 2): (N, 2, 2)."""
+        """Compute the derivatives (N, 2, 2) of distorted by undistorted ray coordinates at `xy` (N, 2)."""
         k1, k2, p1, p2, k3 = self.distortion
         x, y = xy[:, 0], xy[:, 1]
         r2 = x * x + y * y
@@ -141,9 +141,9 @@ class Camera:
         return jacobian
 
     def undistort(self, uv: ArrayLike) -> Array:
-        """Compute undistorted ray coordinates (N, 2) of image points `uv` (N, 2), by Newton's method to 1e-12.
+        """Compute undistorted ray coordinates x/z, y/z (N, 2) of image points `uv` (N, 2) in px; NaN if none.
 
-        A point outside the region where the distortion is one-to-one does not converge; it comes back as NaN.
+        By Newton's method to 1e-12. A point outside the region where the distortion is one-to-one does not converge.
         """
         from core.model.undistortion import undistorted  # compiled: a window starts without
 
@@ -152,20 +152,17 @@ class Camera:
         return np.asarray(undistorted(distorted, self.distortion))
 
     def rays(self, uv: ArrayLike) -> Array:
-        """Compute rays (N, 3), r = (x, y, 1), of image points `uv` (N, 2) in pixels."""
+        """Compute undistorted rays r = (x, y, 1), (N, 3), of image points `uv` (N, 2) in px."""
         xy = self.undistort(uv)
         return np.column_stack([xy, np.ones(len(xy))])
 
     def ray_jacobian(self, rays: Array) -> Array:
-        """Compute ∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
+        """Compute the derivatives (N, 2, 2) in 1/px of the x, y of `rays` (N, 3) by the image point (u, v)."""
         forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
         (a, b), (c, d) = np.moveaxis(forward, 0, 2)
         inverse = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
         return np.ascontiguousarray(np.moveaxis(inverse, 2, 0))
 
     def inverse_depth_slopes(self, pi: Array, rays: Array, directions: Array) -> Array:
-        """Compute ∂(1/z) (N,) in 1/(mm px) along `directions` (N, 2) of uv.
-
-        Of light in the plane `pi` (3,) at `rays`.
-        """
+        """Compute ∂(1/z) (N,) in 1/(mm px) along `directions` (N, 2) of the picture, of light in a plane `pi` (3,)."""
         return np.asarray(np.einsum("i,nij,nj->n", pi[:2], self.ray_jacobian(rays), directions), dtype=np.float64)

@@ -26,9 +26,9 @@ class Certificate:
 
     @property
     def stated(self) -> bool:
-        """Whether anything is stated in the certificate."""
+        """Whether number, laboratory or due date of the certificate is stated."""
         return self != Certificate()
 
     def lapsed(self, day: date) -> bool:
-        """Whether the certificate has expired by this day."""
+        """Whether the certificate's due date is before this `day`; False where no due date is stated."""
         return self.due is not None and day > self.due

@@ -9,7 +9,7 @@ from core.model.arrays import Array
 
 
 def square_to(directions: ArrayLike) -> Array:
-    """Find two unit vectors, the columns (…, 3, 2), perpendicular to each of `directions` (…, 3) and to each other.
+    """Find two unit vectors, columns of (…, 3, 2), perpendicular to each of `directions` (…, 3) and to each other.
 
     Which two is arbitrary, but the same for the same direction: the null space of a row by its singular value
     decomposition. `directions` may have any length but 0.

@@ -45,19 +45,16 @@ class Fan:
 
     @property
     def lines(self) -> int:
-        """Number of lines."""
+        """Number of light planes, each of which draws one line."""
         return len(self.planes)
 
     @property
     def pis(self) -> Array:
-        """Planes π of all lines stacked, (N, 3) in 1/mm."""
+        """Vectors π of all light planes, π·X = 1, (N, 3) in 1/mm."""
         return np.array([plane.pi for plane in self.planes])
 
     def pis_at(self, line: NDArray[np.int64], rays: Array) -> Array:
-        """Compute π (M, 3) of planes that meet `rays` (M, 3) at the depth of the light of `line` (M,).
-
-        Its own if not bent.
-        """
+        """Compute π (M, 3) of planes through the light of each `line` (M,) where `rays` (M, 3) meet it, bent or not."""
         pis: Array = self.pis[line]
         return pis if self.bends is None else bent_pis(pis, self.bends[line], rays)
 
@@ -68,7 +65,7 @@ class Fan:
 
     @property
     def angle_sds(self) -> tuple[float, ...]:
-        """Standard deviation in rad of each of `angles`, by the covariance."""
+        """Standard deviations in rad of the N − 1 angles between neighbouring planes, by the fan's covariance."""
         assert self.covariance is not None
         pis, sds = self.pis, []
         for k in range(len(pis) - 1):

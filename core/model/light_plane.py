@@ -29,7 +29,7 @@ class LightPlane:
 
     @classmethod
     def from_normal(cls, normal: ArrayLike, d_mm: float) -> LightPlane:
-        """Make the plane normal·X = d_mm, with `normal` (3,)."""
+        """Make the light plane normal·X = d_mm, for a `normal` (3,) of any length but 0."""
         return cls(np.asarray(normal, dtype=np.float64) / d_mm)
 
     @property
@@ -50,19 +50,19 @@ class LightPlane:
         return depths
 
     def points(self, rays: ArrayLike) -> Array:
-        """Compute points (N, 3) in mm where `rays` (N, 3) meet the plane (triangulation)."""
+        """Compute the points (N, 3) in mm where `rays` (N, 3), r = (x, y, 1), meet the plane."""
         directions = np.asarray(rays, dtype=np.float64)
         points: Array = directions * self.depths(directions)[:, None]
         return points
 
     def distances(self, points: ArrayLike) -> Array:
-        """Compute signed distances (N,) in mm of `points` (N, 3); positive on the side away from the camera."""
+        """Compute signed distances (N,) in mm of `points` (N, 3) from the plane, negative on the camera's side."""
         signed: Array = np.asarray(points, dtype=np.float64) @ self.normal - self.d_mm
         return signed
 
 
 def angle_between(a: LightPlane, b: LightPlane) -> float:
-    """Compute the angle between two planes in rad, 0 to π/2."""
+    """Compute the angle in rad, 0 to π/2, between two light planes."""
     sine = np.linalg.norm(np.cross(a.normal, b.normal))
     cosine = abs(a.normal @ b.normal)
     return float(np.arctan2(sine, cosine))

@@ -26,12 +26,12 @@ class Pose:
 
     @classmethod
     def identity(cls) -> Pose:
-        """Make the identity."""
+        """Make the pose that moves nothing: no rotation, no translation."""
         return cls(np.eye(3), np.zeros(3))
 
     @classmethod
     def from_vector(cls, vector: ArrayLike) -> Pose:
-        """Make a pose of a `vector` (6,): rotation vector in rad, translation in mm."""
+        """Make a pose from a `vector` (6,): rotation vector in rad, then translation in mm."""
         from scipy.spatial.transform import Rotation
 
         six = np.asarray(vector, dtype=np.float64)
@@ -39,18 +39,18 @@ class Pose:
 
     @property
     def vector(self) -> Array:
-        """Rotation vector in rad and translation in mm, six numbers."""
+        """The pose as a vector (6,): rotation vector in rad, then translation in mm."""
         from scipy.spatial.transform import Rotation
 
         return np.concatenate([Rotation.from_matrix(self.rotation).as_rotvec(), self.translation])
 
     def apply(self, points: ArrayLike) -> Array:
-        """Move `points` (N, 3) in mm."""
+        """Transform `points` (N, 3) in mm by the pose: R X + t."""
         moved: Array = np.asarray(points, dtype=np.float64) @ self.rotation.T + self.translation
         return moved
 
     def inverse(self) -> Pose:
-        """Invert the motion."""
+        """Compute the inverse pose, which moves points back."""
         return Pose(self.rotation.T, -self.rotation.T @ self.translation)
 
     def __matmul__(self, other: Pose) -> Pose:

@@ -10,7 +10,7 @@ from core.model.arrays import Array
 
 
 def inverse_root(matrix: Array) -> Array:
-    """Find the lower triangle R (N, N) with Rᵀ R = M⁻¹ of a positive definite `matrix` M (N, N): M⁻¹ costs twice that.
+    """Compute the lower triangular R (N, N) with Rᵀ R = M⁻¹ for a positive definite `matrix` M (N, N).
 
     Raises
     ------
@@ -21,6 +21,6 @@ def inverse_root(matrix: Array) -> Array:
 
 
 def inverse_by(lower: Array) -> Array:
-    """Invert M (N, N) by its `lower` (N, N) Cholesky factor; values above the diagonal are ignored."""
+    """Compute M⁻¹ (N, N) from the Cholesky factor `lower` (N, N) of M; values above its diagonal are ignored."""
     inverse = np.tril(dpotri(lower, lower=1)[0])
     return np.asarray(inverse + np.tril(inverse, -1).T)

@@ -119,22 +119,22 @@ class Judgement:
 
     @property
     def times(self) -> float:
-        """Ratio of the residuals to their stated size, √(χ²/N)."""
+        """Ratio of the RMS of the residuals to the RMS of their stated uncertainties."""
         return self.rms / max(self.expected, 1e-300)
 
     @property
     def strongest(self) -> int:
-        """The cell whose mean is furthest from zero for its number of residuals."""
+        """Index of the cell whose mean is farthest from zero in units of what chance makes of so many residuals."""
         return int(np.nanargmax(np.abs(self.profile) * np.sqrt(self.count)))
 
     @property
     def together(self) -> float:
-        """Number of neighbours that err together: 1 where each errs on its own."""
+        """Number of neighbouring residuals that err together; 1 where each errs on its own."""
         return self.run_length / _INDEPENDENT_RUN
 
 
 def judge_residuals(residuals: Residuals) -> Judgement:
-    """Compare residuals with their stated uncertainty and look for runs and for a pattern common to all groups."""
+    """Judge residuals by their stated uncertainty, by runs of one sign and by a pattern common to all groups."""
     values, group = residuals.values, np.unique(residuals.group, return_inverse=True)[1]
     if not len(values):
         return Judgement(np.nan, np.nan, np.nan, np.zeros(0), np.zeros(0, np.intp), 1.0, 0.0)
@@ -164,7 +164,7 @@ def judge_residuals(residuals: Residuals) -> Judgement:
 def of_vectors(
     values: Array, expected: Array, group: NDArray[np.intp], cell: NDArray[np.intp], cells: int
 ) -> Residuals:
-    """Make residuals of both coordinates of vectors `values` (N, 2); the second coordinate has `cells` of its own.
+    """Make residuals for judging from vectors `values` (N, 2), each coordinate with `cells` cells of its own.
 
     `expected` (N,) is the standard uncertainty of each coordinate; else as :class:`Residuals`.
     """
@@ -196,7 +196,7 @@ class SharedErrors:
     information_of: Callable[[Array, Array], Array] | None = None
 
     def information(self, others: Array, weight: Array) -> Array:
-        """Compute Aᵀ W A (q + S, q + S) of A = [`others` (N, q), `shared`]; `weight` (N,) is the diagonal of W."""
+        """Compute Aᵀ W A (q + S, q + S) of A = [`others` (N, q), `shared` (N, S)] and W = diag(`weight`)."""
         if self.information_of is not None:
             return self.information_of(others, weight)
         columns = np.hstack([others, self.shared])
@@ -204,7 +204,7 @@ class SharedErrors:
 
 
 def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
-    """Compare residuals that share known errors with their stated uncertainty, and look for a pattern over the cells.
+    """Judge residuals with known shared `errors` by their stated uncertainty, and look for a pattern over the cells.
 
     `residuals.expected` is the whole of what is stated, shared errors included; of the judgement, `profile` is the
     likeliest pattern in the residuals' unit, drawn towards zero as far as it is unsure, and `systematic` its standard
@@ -295,7 +295,7 @@ def _independent(design: Array, own: Array) -> Array:
 
 
 def judge_with_covariance(residuals: Residuals, covariance: Array) -> Judgement:
-    """Compare residuals of a known `covariance` (N, N) with it, and look for a pattern over the cells beyond it.
+    """Judge residuals by their `covariance` (N, N), and look for a pattern over the cells beyond it.
 
     For few residuals which hang together in any way, such as what a fit has estimated of errors with a prior.
     `residuals.expected` is not asked for anything that `covariance` says.
@@ -324,20 +324,20 @@ def judge_with_covariance(residuals: Residuals, covariance: Array) -> Judgement:
 
 
 def along_line(place: Array, cells: int) -> NDArray[np.intp]:
-    """Number the places (N,) along one line by equal parts from its first to its last."""
+    """Number places (N,) along a line by equal parts of it: 0 … `cells` − 1 from first to last place."""
     low, high = float(place.min()), float(place.max())
     return _cell((place - low) / max(high - low, 1e-300), cells)
 
 
 def without_line(place: Array, values: Array) -> Array:
-    """Subtract from residuals (N,) along a line their own offset and slope by `place` (N,), to show how it is bent."""
+    """Subtract from `values` (N,) the straight line fitted to them over `place` (N,)."""
     off = place - place.mean()
     slope = float(off @ values) / max(float(off @ off), 1e-300)
     return np.asarray(values - values.mean() - slope * off, dtype=np.float64)
 
 
 def over_picture(uv: Array, size: tuple[int, int], grid: tuple[int, int]) -> NDArray[np.intp]:
-    """Number the cells of a `grid` (columns, rows) over a picture of `size` (width, height) that `uv` (N, 2) are in."""
+    """Find the index (N,) of the cell, in a `grid` (columns, rows) over the picture, that each `uv` (N, 2) is in."""
     columns = _cell((uv[:, 0] + 0.5) / size[0], grid[0])
     return columns + grid[0] * _cell((uv[:, 1] + 0.5) / size[1], grid[1])
 

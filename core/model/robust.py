@@ -42,10 +42,7 @@ def huber_weights(residuals: Array, limit: float = HUBER) -> Array:
 
 
 def tukey_weights(residuals: Array, limit: float | Array = TUKEY) -> Array:
-    """Compute Tukey's biweight, (1 − (residual / limit)²)² up to `limit` and 0 beyond.
-
-    Of any shape, both in one unit.
-    """
+    """Compute Tukey's biweights (1 − (residual / limit)²)² up to `limit`, 0 beyond, for `residuals` of any shape."""
     return np.asarray(np.clip(1 - (residuals / limit) ** 2, 0.0, None) ** 2)
 
 
@@ -78,7 +75,7 @@ class Schedule:
     counts_from: int = 0
 
     def rejects(self, round_: int, settled: int) -> bool:
-        """Whether a round uses Tukey's weights, after so many that have settled."""
+        """Whether round number `round_` uses Tukey's weights, which reject, with `settled` rounds settled before it."""
         by_huber = self.rounds if self.huber is None else self.huber
         return round_ >= by_huber or (self.early and settled > 0)
 
@@ -105,7 +102,7 @@ def irls(
     settled: Callable[[T, T], bool] | None = None,
     watched: Callable[[range], Iterable[int]] = iter,
 ) -> T:
-    """Fit by iteratively reweighted least squares: the one loop of all robust fits.
+    """Fit by iteratively reweighted least squares, with Huber's or Tukey's weights, until it has settled.
 
     Parameters
     ----------

@@ -17,31 +17,31 @@ Index = NDArray[np.int64]
 
 @inlined()
 def new_row(count: int) -> Array:
-    """Allocate an array (count,) without values."""
+    """Allocate an array (count,) of float64 whose values are not set."""
     return np.empty(count)
 
 
 @inlined()
 def new_table(rows: int, columns: int) -> Array:
-    """Allocate an array (rows, columns) without values."""
+    """Allocate an array (rows, columns) of float64 whose values are not set."""
     return np.empty((rows, columns))
 
 
 @inlined()
 def zero_table(rows: int, columns: int) -> Array:
-    """Make an array (rows, columns) of zeros."""
+    """Make an array (rows, columns) of float64 zeros."""
     return np.zeros((rows, columns))
 
 
 @inlined()
 def new_single_table(rows: int, columns: int) -> NDArray[np.float32]:
-    """Allocate an array (rows, columns) of single precision without values."""
+    """Allocate an array (rows, columns) of float32 whose values are not set."""
     return np.empty((rows, columns), np.float32)
 
 
 @inlined()
 def row_of(count: int, value: float) -> Array:
-    """Make an array (count,) of one value."""
+    """Make an array (count,) of float64 filled with `value`."""
     row = np.empty(count)
     for k in range(count):
         row[k] = value
@@ -50,19 +50,19 @@ def row_of(count: int, value: float) -> Array:
 
 @inlined()
 def new_indices(count: int) -> Index:
-    """Allocate an array (count,) of whole numbers without values."""
+    """Allocate an array (count,) of int64 whose values are not set."""
     return np.empty(count, np.int64)
 
 
 @inlined()
 def new_index_table(rows: int, columns: int) -> Index:
-    """Allocate an array (rows, columns) of whole numbers without values."""
+    """Allocate an array (rows, columns) of int64 whose values are not set."""
     return np.empty((rows, columns), np.int64)
 
 
 @inlined()
 def indices_of(count: int, value: int) -> Index:
-    """Make an array (count,) of one whole number."""
+    """Make an array (count,) of int64 filled with `value`."""
     row = np.empty(count, np.int64)
     for k in range(count):
         row[k] = value
@@ -77,7 +77,7 @@ def new_flags(count: int) -> NDArray[np.bool_]:
 
 @inlined()
 def doubled_index_table(table: Index) -> Index:
-    """Copy `table` (N, C) into one with twice as many rows."""
+    """Copy `table` (N, C) into the first half of a new array (2N, C); its second half is not set."""
     rows, columns = table.shape
     larger = np.empty((2 * rows, columns), np.int64)
     for i in range(rows):
@@ -88,7 +88,7 @@ def doubled_index_table(table: Index) -> Index:
 
 @inlined()
 def doubled_indices(row: Index) -> Index:
-    """Copy `row` (N,) into one twice as long."""
+    """Copy `row` (N,) into the first half of a new array (2N,); its second half is not set."""
     larger = np.empty(2 * len(row), np.int64)
     for k in range(len(row)):
         larger[k] = row[k]
@@ -97,7 +97,7 @@ def doubled_indices(row: Index) -> Index:
 
 @inlined()
 def first_rows(table: Array, count: int) -> Array:
-    """Copy the first rows of a `table` (N, C)."""
+    """Copy the first `count` rows of a `table` (N, C)."""
     copy = np.empty((count, table.shape[1]))
     for i in range(count):
         for k in range(table.shape[1]):
@@ -134,7 +134,7 @@ def backwards(row: Array) -> Array:
 
 @inlined()
 def smallest(values: Array, k: int) -> float:
-    """Find the value that `k` of the `values` (N,) do not exceed; `values` are reordered. Hoare's selection.
+    """Find the element with index `k` in ascending order of `values` (N,), which are reordered (Hoare).
 
     Hoare, C. A. R., Algorithm 65: Find, Communications of the ACM 4 (1961), doi:10.1145/366622.366647.
     """
@@ -159,7 +159,7 @@ def smallest(values: Array, k: int) -> float:
 
 @inlined()
 def median_of(values: Array, first: int, behind: int) -> float:
-    """Compute the median of the `values` (N,) from `first` to before `behind`, at least one."""
+    """Compute the median of `values[first:behind]`, at least one value."""
     count = behind - first
     copy = np.empty(count)
     for k in range(count):
@@ -186,7 +186,7 @@ def sort(values: Array) -> None:
 
 @inlined()
 def first_not_below(values: Array, limit: float) -> int:
-    """Count the values of the rising `values` (N,) that are below the limit."""
+    """Count the values below `limit` in ascending `values` (N,): the index of the first that is not below it."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -199,7 +199,7 @@ def first_not_below(values: Array, limit: float) -> int:
 
 @inlined()
 def first_above(values: Array, limit: float) -> int:
-    """Count the values of the rising `values` (N,) that are not above the limit."""
+    """Count the values at or below `limit` in ascending `values` (N,): the index of the first above it."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -212,9 +212,9 @@ def first_above(values: Array, limit: float) -> int:
 
 @inlined()
 def invert(matrix: Array, inverse: Array, size: int) -> None:
-    """Write into `inverse` that of the first `size` rows and columns of a positive definite `matrix` (N, N).
+    """Invert the first `size` rows and columns of a positive definite `matrix` (N, N) into `inverse`.
 
-    This is overwritten.
+    The `matrix` is overwritten.
 
     Gauss and Jordan's elimination, which needs no search for pivots where a matrix is positive definite.
     """

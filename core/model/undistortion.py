@@ -16,9 +16,9 @@ _CONVERGED = 1e-9  # misfit with which a point counts as converged after all rou
 
 @compiled()
 def undistorted(distorted: Array, distortion: Array) -> Array:
-    """Find coordinates (N, 2) that `distortion` (k1, k2, p1, p2, k3) maps to the `distorted` ones (N, 2).
+    """Find the coordinates (N, 2) that distortion maps to the `distorted` ones (N, 2); NaN where there are none.
 
-    NaN for none.
+    The coefficients `distortion` are k1, k2, p1, p2, k3.
     """
     k1, k2, p1, p2, k3 = distortion[0], distortion[1], distortion[2], distortion[3], distortion[4]
     found = np.empty((len(distorted), 2))
