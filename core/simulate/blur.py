@@ -16,7 +16,7 @@ BLUR_REACH = 4.5
 
 
 def blurred(light: Map, sigma_px: float) -> Map:
-    """Blur `light` (H, W) by a lens of Gaussian σ `sigma_px` and by the area of a pixel."""
+    """Blur `light` (H, W) by a lens of Gaussian σ `sigma_px`, and average it over each pixel's area."""
     from scipy.special import erf  # here: the command line reads scenarios, and `--help` waits for nothing it can spare
 
     reach = int(np.ceil(BLUR_REACH * sigma_px + 0.5))

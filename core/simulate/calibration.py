@@ -74,13 +74,13 @@ def _part(scenario: Scenario) -> Part:
 
 
 def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:
-    """Make the sensor of a scenario with the exposure for plates."""
+    """Make a scenario's sensor with the usual brightness, as for the pictures of plates."""
     effects = replace(scenario.sensor, brightness=1.0)
     return Sensor(rig.optics, scenario.bits, scenario.noise, effects=effects, seed=scenario.seed)
 
 
 def plane_plate(scenario: Scenario) -> tuple[Pattern, float]:
-    """Make the true plane target of a scenario, and how far its left and right edges are bent, in mm."""
+    """Make the true plane target of a scenario; also give by how many mm its left and right edges are bent."""
     plates = scenario.plates
     return scaled(printed(PLATES[scenario.plane_target]), plates.plane_scale), plates.plane_bow_mm
 
@@ -105,7 +105,7 @@ class CalibrationPictures:
             self.plane_poses["stage"] = _on_table(rig, self._plane_plate.outline)
 
     def render(self, name: str) -> Iterator[tuple[str, Picture]]:
-        """Render the pictures of one view or pose, each with its path within the set."""
+        """Yield the pictures of the view or pose called `name`, each with its path within the recording set."""
         if name in self.camera_poses:
             yield f"camera/{name}.png", self._view(name, self.camera_poses[name])
             return
@@ -143,7 +143,7 @@ class CheckPictures:
         self.poses = {f"check{i:02d}": pose for i, pose in enumerate(poses)}
 
     def render(self, name: str) -> Iterator[tuple[str, Picture]]:
-        """Render the pictures of one pose, each with its path within the set."""
+        """Yield the pictures of the check's pose called `name`, each with its path within the recording set."""
         index = CHECK_SEEDS + list(self.poses).index(name)
         pictures = plane_pictures(self._context, self._plate, self.poses[name], PLANE_GREY, self._seed, index)
         yield from ((f"check/{name}{ending}.png", picture) for ending, picture in pictures.items())

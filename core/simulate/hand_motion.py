@@ -49,7 +49,7 @@ class HandMotion:
 
     @property
     def is_visible(self) -> bool:
-        """Whether pictures show the motion."""
+        """Whether the hand's motion within an exposure, or while rows are read out, shows in pictures."""
         return (self.speed_mm_s > 0 or self.tremor_mm > 0) and (self.readout_s > 0 or self.exposure_s > 0)
 
     def sheets(self, sheet: Sheet, rows: int, heading: float, rng: np.random.Generator) -> tuple[Sheet, ...]:

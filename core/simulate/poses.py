@@ -27,7 +27,7 @@ GOLDEN_SHARE = 0.618034
 def camera_poses(
     camera: Camera, outline: Array, views: int, rng: np.random.Generator, *, nearest_mm: float = NEAREST_MM
 ) -> list[Pose]:
-    """Make `views` poses of a plate whose corners are `outline` (4, 3) in mm: all over the picture, tilted to 35°.
+    """Make `views` poses of a plate with corners `outline` (4, 3) in mm, spread over the picture and tilted up to 35°.
 
     Distances from `nearest_mm` to 200 mm more (farther where the plate would not fit in), tilt axes all round, a little
     turned. The plate is wholly in each picture.
@@ -52,7 +52,7 @@ def camera_poses(
 
 
 def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator) -> list[Pose]:
-    """Make poses of a plate on which the fan shines, the plate's middle near each of `centres` (3,) in mm.
+    """Make a pose of a plate for each of `centres` (3,) in mm near its middle, so that the fan shines on it.
 
     Moved aside by up to a third of the plate, so that lines fall on all parts of it, and tilted to 32°; `outline`
     (K, 3) are the plate's corners in its own frame.

@@ -13,7 +13,7 @@ Map = NDArray[np.float32]
 
 
 def ray_map(camera: Camera) -> Map:
-    """Compute undistorted ray coordinates (height, width, 2) of all pixel centres, to float32 (1.5e-4 px).
+    """Compute undistorted ray coordinates x/z, y/z (height, width, 2) of all pixel centres, to float32 (1.5e-4 px).
 
     The same Newton iteration as :meth:`core.model.Camera.undistort`, compiled, each pixel started from its left
     neighbour's solution.

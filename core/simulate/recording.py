@@ -135,7 +135,7 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 
 
 def scenario_rig(scenario: Scenario) -> Rig:
-    """Make the rig of a scenario."""
+    """Make the true camera, fan and optics that a scenario describes."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
     rig = paper_rig(
         scenario.scale,
@@ -157,7 +157,7 @@ def scenario_rig(scenario: Scenario) -> Rig:
 
 
 def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> Picture:
-    """Render picture number `index` of the fan alone, the object moved on by `travel_mm` each time.
+    """Render picture `index` of the fan alone on the scenario's object, moved on by `travel_mm` for each picture.
 
     A moved object shows other speckle; of one that stands still only the camera's noise is new.
     """
@@ -170,7 +170,7 @@ def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> P
 
 
 def changed_rig(scenario: Scenario, rig: Rig) -> Rig:
-    """Make the rig at the time of the scan: as calibrated but for what has changed since."""
+    """Make the rig as it is during the scan: the calibrated one with the scenario's changes since then."""
     focal_ppm = scenario.warming.focal_ppm
     if not scenario.turned_urad and not scenario.drifted_px and not focal_ppm:
         return rig
@@ -189,7 +189,7 @@ def _drifted(rig: Rig, drift_px: float) -> Rig:
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:
-    """Make stage, sheets of light of each frame, and true figures of a scenario, to render without any disk.
+    """Make a scenario's stage, the laser sheets of each frame and the true figures, to render frames without a disk.
 
     >>> stage, sheets, _ = scan_of(Scenario(scale=0.1, frames=3))
     >>> stage.frame(0, sheets[0]).shape
@@ -206,7 +206,7 @@ def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list
 
 
 def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
-    """Make the stage from the frame on at which something moves; None if nothing does."""
+    """Make the stage after the object, table or camera was moved in the scan; None if nothing is moved."""
     if not (scenario.lifted_mm or scenario.pushed_mm or scenario.table_mm or scenario.bumped_px):
         return None
     scene, _ = build_scene(scenario)
@@ -218,7 +218,7 @@ def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
 
 
 def moving_sheets(scenario: Scenario, sheets: Sequence[Sheet]) -> list[tuple[Sheet, ...]]:
-    """Compute the sheets of light in the picture of each frame; several for each of `sheets` if the hand moves."""
+    """List for each frame the sheets of light it shows: one, or several if the hand moves while it is exposed."""
     motion = HandMotion(scenario.hand_mm_s, scenario.tremor_mm, scenario.readout_ms / 1000, scenario.exposure_ms / 1000)
     if not motion.is_visible:
         return [(sheet,) for sheet in sheets]

@@ -112,7 +112,7 @@ class Beam:
 
     @property
     def rayleigh_mm(self) -> float:
-        """Distance from the focus at which the sheet is √2 times as thick."""
+        """Distance in mm from the focus at which the laser sheet is √2 times as thick."""
         return float(4 * np.pi * self.sigma_mm**2 / self.wavelength_mm)
 
 
@@ -164,7 +164,7 @@ def fan_axis(fan: Fan) -> tuple[Array, Array]:
 
 
 def pencil_fan() -> Fan:
-    """Make the exact 5° pencil nearest to the published planes: their axis, their middle plane, ±5°."""
+    """Make a fan of three planes exactly 5° apart through one axis, nearest to the published planes."""
     published = published_fan()
     point, direction = fan_axis(published)
     planes = []

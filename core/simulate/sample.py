@@ -25,7 +25,7 @@ METAL_AT_20 = Part(material="metal", celsius=20.0, u_celsius=0.0, target=TARGET_
 
 
 def sample_scenario() -> Scenario:
-    """Read the scenario of the sample."""
+    """Read the scenario of the sample project that comes with the program."""
     return Scenario.from_toml((files("resources") / "sample" / SAMPLE).read_text(encoding="utf-8"), SAMPLE)
 
 
@@ -38,12 +38,12 @@ def simulated_project(name: str) -> Project:
 
 
 def sample_folder() -> Path:
-    """Return the folder of the sample's recording set, rendered or not."""
+    """Return the folder in the user's cache where the sample's recording set is, or will be rendered."""
     return Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(sample_scenario())}"
 
 
 def sample_set(progress: Progress = silent) -> Path:
-    """Find the folder of the sample's recording set, rendered (in well under a minute) if it is not there yet.
+    """Return the folder of the sample's recording set, rendered first (well under a minute) if it is not there.
 
     Raises
     ------

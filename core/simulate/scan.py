@@ -54,7 +54,7 @@ class StageEffects:
     transport: Transport = ONE_WAY
 
     def over(self, index: int) -> float:
-        """Compute the share of the scan that is over at frame `index`; the reference, −1, is its beginning."""
+        """Compute the share of the scan's frames that is over at frame `index`; 0 for the reference, −1."""
         return (index + 1) / max(self.frames, 1)
 
 
@@ -109,22 +109,19 @@ class ScanStage:
         return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
-        """Render frame number `index`, with the hand-held laser at one sheet.
-
-        At several in the course of the exposure.
-        """
+        """Render frame `index`, lit by one of the hand-held laser's `sheets`, or by several one after another."""
         rng = generator(self.seed, "frame", index)
         return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor, self._hidden_by_hand(sheets))
 
     def further_references(self) -> dict[int, Picture]:
-        """Render the reference in the sensor's further exposures, by their number."""
+        """Render the reference in the sensor's second and third exposure, by their numbers; {} if it has one alone."""
         return {
             number: self._taken(self._still, -1, generator(self.seed, f"reference@{number}"), sensor)
             for number, sensor in self.sensor.further.items()
         }
 
     def further_frames(self, index: int, *sheets: Sheet) -> dict[int, Picture]:
-        """Render a frame with the same light in the sensor's further exposures, by their number."""
+        """Render frame `index` of the same light in the sensor's second and third exposure, by their numbers."""
         if not self.sensor.further:
             return {}
         light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))
@@ -164,11 +161,11 @@ class ScanStage:
 
     @property
     def still(self) -> Map:
-        """Light (h, w) in grey levels that is the same in every frame: the room's and the fan's."""
+        """Light (h, w) in grey levels that is in every frame: the room's and that of the fan fixed to the rig."""
         return self._still
 
     def lit_by(self, *sheets: Sheet, rng: np.random.Generator, fan: bool = True) -> Map:
-        """Compute light (h, w) in grey levels, the mean with the hand-held laser at `sheets`.
+        """Compute the light (h, w) in grey levels of the scene, the mean over the hand-held laser's `sheets`.
 
         `rng` chooses its speckle.
         """

@@ -235,18 +235,18 @@ class Scenario:
             )
 
     def with_effects_of(self, other: Scenario) -> Scenario:
-        """Make the same scenario with laser, lens, sensor, room, plates, warming, setup and transport of another."""
+        """Copy laser, lens, sensor, room, plates, warming, setup and transport from the scenario `other`."""
         effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
         return replace(self, **effects)
 
     @property
     def key(self) -> str:
-        """Short hash of everything in the scenario."""
+        """Hash of all fields of the scenario, shortened to a few digits."""
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
 
     @classmethod
     def from_toml(cls, text: str, where: Path | str = "scenario") -> Scenario:
-        """Read a scenario from TOML, keys as the fields.
+        """Read a scenario from a text of TOML whose keys are the fields; `where` it is from is for messages.
 
         Raises
         ------
@@ -257,7 +257,7 @@ class Scenario:
 
     @classmethod
     def read(cls, path: Path) -> Scenario:
-        """Read a scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
+        """Read a scenario from a TOML file; InputError if it cannot be read, or has an unknown key or a wrong value."""
         return cls.from_toml(read_text(path, most=TOML_BYTES), path)
 
 

@@ -87,7 +87,7 @@ class HandCourse:
 
 
 def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator, setup: Setup = USUAL_SETUP) -> HandCourse:
-    """Make the course of the hand during a scan of `frames` frames, in the order of time."""
+    """Make the course of the hand-held laser during a scan of `frames` frames: its place and aim at each."""
     number = _passes(frames)
     passes = int(number.max(initial=-1)) + 1
     begins = np.searchsorted(number, np.arange(passes))
@@ -110,12 +110,12 @@ def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator, setup:
 def hand_sweeps(
     rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator, setup: Setup = USUAL_SETUP
 ) -> list[Sheet]:
-    """Make the sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
+    """Make the laser sheets of a scan of `frames` frames, in the camera frame, in the order of time."""
     return hand_course(reach, frames, rng, setup).sheets(rig)
 
 
 def headings_of(frames: int) -> Array:
-    """Return for each frame of a scan (N,) +1 where the stripe goes to the right, −1 where to the left."""
+    """List for each frame of a scan (N,) the way of the stripe: +1 to the right, −1 to the left."""
     return np.where(_passes(frames) % 2 == 0, 1.0, -1.0)
 
 
@@ -126,7 +126,7 @@ def _passes(frames: int) -> NDArray[np.intp]:
 
 
 def sweep_range(scene: Scene, centre: Array) -> SweepRange:
-    """Choose the range: past `centre` (3,) in mm over all that stands on the table and a rim on both sides."""
+    """Choose how far the hand sweeps about `centre` (3,) in mm: over all that stands on the table, and a rim."""
     extents = [mesh.triangles.reshape(-1, 3)[:, 0] for mesh in scene.meshes]
     extents += [sphere.centre[0] + np.array([-sphere.radius, sphere.radius]) for sphere in scene.spheres]
     widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=EMPTY_HALF_WIDTH_MM)

@@ -87,12 +87,12 @@ class Truth:
 
 
 def truth_folder(set_folder: Path) -> Path:
-    """Return the folder of the truth of the set in `set_folder`: SET.truth beside SET."""
+    """Return the folder SET.truth beside `set_folder`, SET, for what is true of a simulated set."""
     return set_folder.with_name(set_folder.name + ".truth")
 
 
 def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
-    """Write truth.json and depth.npz into `folder`, and with them the scenario."""
+    """Write the truth of a simulated set to truth.json and depth.npz in `folder`, and its scenario."""
     content = {
         "unit": "mm",
         "scenario": dict(scenario),
@@ -114,7 +114,7 @@ def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
 
 
 def load_truth(folder: Path) -> Truth:
-    """Load the truth of a simulated set; `folder` is the set's or that of the truth itself.
+    """Load what is true of a simulated set, from its own folder or its .truth folder; InputError if there is none.
 
     Raises
     ------

@@ -21,20 +21,20 @@ class Turn:
 
     @classmethod
     def about_the_view(cls, through: Array, degrees: float) -> Turn:
-        """Make the turn by so many degrees."""
+        """Make the rotation by `degrees` about the line along the camera's z through the point `through` (3,) in mm."""
         return cls(Rotation.from_euler("z", degrees, degrees=True).as_matrix(), np.asarray(through, dtype=np.float64))
 
     def point(self, point: Array) -> Array:
-        """Turn a point (3,) in mm."""
+        """Rotate a point (3,) in mm, camera frame."""
         return np.asarray(self.rotation @ (point - self.through) + self.through)
 
     def plane(self, plane: LightPlane) -> LightPlane:
-        """Turn a plane of light."""
+        """Rotate a light plane."""
         normal = self.rotation @ plane.normal
         return LightPlane(normal / (plane.d_mm + (normal - plane.normal) @ self.through))
 
     def sheet(self, sheet: Sheet) -> Sheet:
-        """Turn a laser that does not move within an exposure."""
+        """Rotate a laser sheet, which must not move within the exposure."""
         return replace(
             sheet,
             plane=self.plane(sheet.plane),

@@ -45,11 +45,11 @@ class LaserEffects:
 
     @property
     def reach(self) -> float:
-        """Ratio of how far its light reaches to that of a Gaussian."""
+        """Ratio of the distance that the laser's light reaches, halo or shoulder included, to that of a Gaussian."""
         return HALO_WIDTH if self.halo else 1.0 + SHOULDER_AT / 4 if self.shoulder else 1.0
 
     def across(self, d: Array) -> Array:
-        """Compute the light (N,) at d (N,) σ from the middle of the sheet, over the crest's."""
+        """Compute the light (N,) at d (N,), in σ, from the sheet's middle; 1 there for a Gaussian."""
         light = np.exp(-0.5 * (d**2 if self.edge == 2 else np.abs(self._narrowed * d) ** self.edge))
         if self.halo:
             light += self.halo * np.exp(-0.5 * (d / HALO_WIDTH) ** 2)

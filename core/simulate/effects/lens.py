@@ -63,7 +63,7 @@ class LensEffects:
         )
 
     def through_lens(self, camera: Camera) -> Camera:
-        """Add this lens's third radial coefficient to the camera."""
+        """Make a copy of `camera` with this lens's third radial coefficient k3 added."""
         if not self.k3:
             return camera
         k1, k2, p1, p2, k3 = camera.distortion

@@ -58,9 +58,9 @@ class RoomEffects:
         )
 
     def added(self, index: int, shape: tuple[int, ...], readout_s: float, rng: np.random.Generator) -> Map | None:
-        """Compute the added light in frame `index` (−1: the reference) as a share of the light.
+        """Compute by what share of itself the room's light is more in frame `index` (−1: the reference); None if by 0.
 
-        (h or 1, w or 1), or None.
+        (h or 1, w or 1).
         """
         factor = np.ones((1, 1))
         if self.flicker:

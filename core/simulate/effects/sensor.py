@@ -81,7 +81,7 @@ class SensorEffects:
         )
 
     def collected(self, light: Map, room: Map | None, black: float) -> Map:
-        """Compute the light (h, w) at each site before noise.
+        """Compute the light (h, w) that a colour mosaic, smear and blooming leave at each pixel, before noise.
 
         `room` (h, w) is the white share of it, the rest is red.
         """
@@ -97,7 +97,7 @@ class SensorEffects:
         return light
 
     def with_hot_pixels(self, light: Map, rng: np.random.Generator) -> Map:
-        """Add the dark current of hot pixels to light (h, w), the same ones wherever `rng` begins in the same way."""
+        """Add the dark current of hot pixels to light (h, w); an `rng` of the same seed gives the same pixels."""
         if not self.hot_share:
             return light
         hot = rng.random(light.shape, dtype=np.float32) < self.hot_share
@@ -106,18 +106,18 @@ class SensorEffects:
         return light
 
     def developed(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """Develop the picture (h, w) for its file: (h, w, 3) blue, green, red from a mosaic."""
+        """Interpolate a colour mosaic (h, w) to (h, w, 3) blue, green, red for its file; keep grey and raw."""
         if not self.colour or self.raw:
             return picture
         return np.asarray(cv2.cvtColor(picture, cv2.COLOR_BayerRGGB2BGR), dtype=picture.dtype)  # type: ignore[return-value]
 
     @property
     def suffix(self) -> str:
-        """Ending of the picture's files."""
+        """Ending of the pictures' file names, with its point."""
         return ".jpg" if self.jpeg_quality else ".png"
 
     def file_of(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
-        """Encode the file of a picture (h, w) or (h, w, 3)."""
+        """Encode a picture (h, w) or (h, w, 3) as the bytes of a file of this sensor's format."""
         settings = [cv2.IMWRITE_JPEG_QUALITY, self.jpeg_quality]
         settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
         done, data = cv2.imencode(self.suffix, picture, settings if self.jpeg_quality else [])

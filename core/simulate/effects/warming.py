@@ -56,7 +56,7 @@ class Warming:
         )
 
     def at(self, share: float, light: Map, camera: Camera) -> Map:
-        """Image light (h, w) as the camera shows it when `share` of the scan is over."""
+        """Shift and scale the image `light` (h, w) as a camera has warmed up when the `share` of the scan is over."""
         if not share or not (self.scan_px or self.scan_focal_ppm):
             return light
         from scipy.ndimage import affine_transform  # here: the command line reads scenarios, and --help needs no scipy

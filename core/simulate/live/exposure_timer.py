@@ -32,14 +32,14 @@ class ExposureTimer:
         self._exposed_at = float("-inf")
 
     def start(self) -> None:
-        """Restart: the next exposure is number 0, at 0 s."""
+        """Restart the timer: the next exposure has number 0 and time 0 s."""
         self._origin = self._clock()
         self._base_number, self._base_s = 0, 0.0
         self._last = self._delivered = -1
         self._forgiven = True
 
     def set_rate(self, rate_hz: float) -> None:
-        """Change the rate in Hz; 0: as fast as frames are delivered."""
+        """Set the exposures' rate in Hz; 0 exposes as fast as frames are delivered."""
         self.skip()
         now = self.now()
         self._base_number, self._base_s = self._last + 1, now
@@ -48,11 +48,11 @@ class ExposureTimer:
 
     @property
     def is_paced(self) -> bool:
-        """Whether its time follows the clock."""
+        """Whether the simulated time follows the clock, instead of waiting for each frame to be delivered."""
         return self._paced
 
     def now(self) -> float:
-        """Return the time in s since the start."""
+        """Return the simulated time in s since the start."""
         return self._clock() - self._origin if self._paced else self.time_of(self._delivered + 1)
 
     def time_of(self, number: int) -> float:
@@ -66,7 +66,7 @@ class ExposureTimer:
         return 0.0 if self._hurried else self._exposed_at + 1 / self._rate - self._clock()
 
     def late_s(self) -> float:
-        """Compute how many s the clock is ahead of this time since the last exposure, where this time waits."""
+        """Compute how many s the clock is ahead of a simulated time that waits for a frame; else 0."""
         return 0.0 if self._paced or self._hurried or self._forgiven else max(0.0, -self.wait_s())
 
     def expose(self) -> tuple[int, int]:
@@ -80,11 +80,11 @@ class ExposureTimer:
         return number, lost
 
     def delivered(self) -> None:
-        """Record that the last exposure has reached its reader."""
+        """Record that the frame of the last exposure has been read."""
         self._delivered = self._last
 
     def skip(self) -> None:
-        """Forget the exposures up to now: the next one is not made before, and none of them counts as missed."""
+        """Discard the exposures due up to now: the next one comes later, and none of these counts as missed."""
         self._forgiven = True
         if self._paced:
             self._last = max(self._last, self._base_number + floor((self.now() - self._base_s) * self._rate))

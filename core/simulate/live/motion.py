@@ -47,10 +47,7 @@ class PlateMotion:
     move_s: float
 
     def at(self, time_s: float) -> tuple[Pose, int | None]:
-        """Return the pose at a time from the beginning of the first rest, and the number of the rest.
-
-        None in a move.
-        """
+        """Return the plate's pose at `time_s` since the first rest began, and the rest's number; None in a move."""
         number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
         rest = int(number) % len(self.poses)
         if within <= self.rest_s:
@@ -60,12 +57,12 @@ class PlateMotion:
         return self._between(self.poses[rest], self.poses[(rest + 1) % len(self.poses)], eased), None
 
     def rest_at(self, time_s: float) -> int | None:
-        """Count the rests before that of this time; None in a move."""
+        """Return the number, from 0, of the rest that the plate is in at `time_s`; None within a move."""
         number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
         return int(number) if within <= self.rest_s else None
 
     def end_of_rest(self, number: int) -> float:
-        """Compute the last time in s at which the plate rests at its pose `number`, counted from 0."""
+        """Compute the time in s at which the plate's rest `number`, counted from 0, ends."""
         return number * (self.rest_s + self.move_s) + (1 - 1e-9) * self.rest_s
 
     def _between(self, first: Pose, second: Pose, share: float) -> Pose:
@@ -106,7 +103,7 @@ class HandPath:
         self._held = PchipInterpolator(times, held)
 
     def sheet(self, time_s: float) -> Sheet:
-        """Return the sheet of light at a time from the beginning of the first pass, in the camera frame."""
+        """Return the hand-held laser's sheet of light, in the camera frame, `time_s` after the first pass began."""
         tilt, baseline, sway, nearness, *aim = np.asarray(self._held(time_s % self._period))[:, None]
         course = HandCourse(np.zeros(1, np.intp), tilt, np.ones(1), baseline, sway, nearness, np.transpose(aim))
         return course.sheets(self._rig)[0]

@@ -114,7 +114,7 @@ class LiveScene:
         self._sensor = Sensor(self.rig.optics, scenario.bits, scenario.noise)
 
     def precompute(self, step: Step) -> None:
-        """Compute what all pictures of a step share, so that each is rendered quickly."""
+        """Compute in advance what all pictures of a `step` share, so that each is rendered quickly."""
         width, height = self.rig.camera.image_size
         if self._rays is None:
             self._rays = ray_map(self.rig.camera)
@@ -132,7 +132,7 @@ class LiveScene:
         return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
 
     def motion(self, step: Step) -> PlateMotion | None:
-        """Return the motion of the plate in this step; None where there is no plate."""
+        """Return the motion of the target in this step; None for a step without a target."""
         return self._motions.get(step)
 
     def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:

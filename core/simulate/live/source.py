@@ -130,16 +130,16 @@ class SimulatedSource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """Exposure, gain and rate."""
+        """Settings that the simulated source has, with their limits: exposure, gain and rate."""
         return CAPABILITIES
 
     @property
     def truth(self) -> LiveTruth:
-        """True camera, fan and thickness."""
+        """True camera, fan and thickness of the simulated rig."""
         return self._scene.truth
 
     def open(self) -> None:
-        """Start exposing; opened anew, time and counting begin anew."""
+        """Start the simulated exposures, with time and frame numbers from 0."""
         self.close()
         with self._changed:
             self._stopping, self._problem = False, None
@@ -151,10 +151,7 @@ class SimulatedSource:
         self._thread.start()
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set exposure (default: 8 ms), gain (default: 0 dB) and rate (default: up to 12 Hz.
-
-        0: as fast as it is read).
-        """
+        """Set exposure (default 8 ms), gain (0 dB) and rate (up to 12 Hz; 0: as fast as frames are read)."""
         CAPABILITIES.check(settings, self.name)
         with self._changed:
             if settings.exposure_ms is not None:
@@ -166,7 +163,7 @@ class SimulatedSource:
             self._ordered()
 
     def prepare(self, step: Step) -> None:
-        """Put the step's target, or the object, before the camera; its motion begins now."""
+        """Put the target or the object of this `step` before the camera; its motion begins anew."""
         with self._changed:
             now = self._timer.now()
             self._state = _State(step, self._state.lasers, began_s=now, lit_s=now)
@@ -174,7 +171,7 @@ class SimulatedSource:
             self._ordered()
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Switch the lasers; the hand goes on where it stopped. Always True."""
+        """Switch the simulated lasers and return True; the hand goes on where it stopped."""
         with self._changed:
             self._state = self._state.lit(lasers, self._timer.now())
             self._ordered()
@@ -182,16 +179,16 @@ class SimulatedSource:
 
     @property
     def waits(self) -> bool:
-        """Whether the next frame waits until it is read: not at a rate that was set."""
+        """Whether the next frame is exposed only when the last one was read: unless a rate was set."""
         return not self._timer.is_paced
 
     def go_on(self, frame: Frame) -> None:
-        """End the wait for a plate's pose beyond its rest: its frame was taken, or is useless."""
+        """Let the plate move on from a pose that it holds until this `frame` of it was taken or rejected."""
         with self._changed:
             self._hand.go_on(frame.index)
 
     def read(self, timeout_s: float) -> Frame | None:
-        """Return the next frame, exposed after the last command; None if there is none within the time."""
+        """Return the next frame, exposed after the last command; None if there is none within `timeout_s`."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting is not None or self._problem is not None, timeout_s)
             if self._problem is not None:
@@ -204,7 +201,7 @@ class SimulatedSource:
             return frame
 
     def close(self) -> None:
-        """Stop exposing and end the thread."""
+        """Stop the simulated exposures and end their thread."""
         with self._changed:
             self._stopping = True
             self._changed.notify_all()

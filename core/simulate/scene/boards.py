@@ -20,7 +20,7 @@ SQUARE_PLATE_MM = 160.0
 
 
 def printed(target: Target) -> Pattern:
-    """Make the plate that carries `target`, in the target's frame."""
+    """Make the plate with the pattern of `target` printed on it, in the target's frame."""
     if isinstance(target, Checkerboard):
         return _checkerboard(target)
     if isinstance(target, Charuco):

@@ -27,7 +27,7 @@ NEAREST_MM = 1.0
 
 
 def bounced_light(light: Map, maps: SurfaceMaps, focal_px: float) -> Map:
-    """Compute the light (h, w) that surfaces lit by `light` (h, w) reflect to each other and then into the camera."""
+    """Compute the light (h, w) that surfaces lit by `light` (h, w) reflect to others, as the camera sees it there."""
     sources = np.argwhere(light > LEAST_SHARE * max(float(light.max()), 1e-12))
     if not len(sources):
         return np.zeros_like(light)

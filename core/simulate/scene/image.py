@@ -23,7 +23,7 @@ NOISE_PLACES = 256
 
 
 def generator(seed: int, kind: str, index: int = 0) -> np.random.Generator:
-    """Make the random numbers of one picture: the same in whatever order and on however many threads it is rendered."""
+    """Make a random generator for one picture, from `seed`, `kind` and `index` alone: other pictures do not matter."""
     return np.random.default_rng([seed, zlib.crc32(kind.encode()), index])
 
 
@@ -42,7 +42,7 @@ class NoiseTile:
         self._tile = rng.standard_normal((shape[0] + NOISE_PLACES, shape[1] + NOISE_PLACES), dtype=np.float32)
 
     def at(self, shape: tuple[int, ...], rng: np.random.Generator) -> Map:
-        """Return the noise (height, width) of one picture; `rng` chooses its place in the tile, and its sides."""
+        """Cut the noise (height, width) of one picture from the tile, at a place and mirrored as `rng` chooses."""
         down, right = rng.integers(0, NOISE_PLACES, 2)
         flip, mirror = 1 - 2 * rng.integers(0, 2, 2)
         part: Map = self._tile[down : down + shape[0], right : right + shape[1]][::flip, ::mirror]
@@ -81,7 +81,7 @@ class Sensor:
     seed: int = 0
 
     def expose(self, light: Map, rng: np.random.Generator, room: Map | None = None) -> Picture:
-        """Expose a picture of `light` (height, width), saturated where it is too bright.
+        """Make the picture that the sensor takes of `light` (height, width): noise, rounding and saturation added.
 
         Of that light, `room` (height, width) is white; the rest is the lasers'. The picture is (height, width, 3) where
         the sensor sees colours.
@@ -110,7 +110,7 @@ class Sensor:
 
     @property
     def further(self) -> dict[int, Sensor]:
-        """Sensors of the second and third exposure of each picture, by their number."""
+        """Sensors with the second and third exposure of each picture, by their numbers; {} if there is one alone."""
         factors = {2: self.effects.second_exposure, 3: self.effects.third_exposure}
         return {n: replace(self, exposure=self.exposure / factor) for n, factor in factors.items() if factor}
 

@@ -65,7 +65,7 @@ class Sheet:
         set_field(self, "axis", frozen_array(axis / np.linalg.norm(axis), (3,), "axis"))
 
     def off_light(self, points: Array, row: NDArray[np.intp]) -> Array:
-        """Compute signed distances (N,) in mm of `points` (N, 3), seen in these rows, from the middle of the light."""
+        """Compute signed distances (N,) in mm of `points` (N, 3) in picture rows `row` from the sheet's middle."""
         if self.rows is not None:
             return np.asarray((points * self.rows[row, :3]).sum(axis=1) - self.rows[row, 3], dtype=np.float64)
         off = self.plane.distances(points)
@@ -80,7 +80,7 @@ class Sheet:
 
 
 def fan_sheets(rig: Rig, aim: Array) -> tuple[Sheet, ...]:
-    """Make the sheets of the rig's fan, line 1 … N, their middles turned towards the point `aim` (3,) in mm."""
+    """Make the sheets of light of the rig's fan, one for each line in order, their middles towards `aim` (3,) in mm."""
     return tuple(Sheet(plane, rig.fan_emitter, aim - rig.fan_emitter, rig.fan_beam) for plane in rig.fan.planes)
 
 

@@ -39,7 +39,7 @@ class Mirror:
     triangles: Array
 
     def image(self, sheet: Sheet) -> Sheet | None:
-        """Reflect the sheet in the mirror; None if its emitter is behind the mirror."""
+        """Reflect a laser sheet in the mirror's plane; None if its emitter is behind the mirror."""
         off = float(self.normal @ sheet.emitter) - self.distance
         if off <= 0:
             return None
@@ -50,7 +50,7 @@ class Mirror:
         return Sheet(LightPlane(normal / (normal @ emitter)), emitter, axis, beam)
 
     def passes(self, emitter: Array, points: Array) -> NDArray[np.bool_]:
-        """Mask (N,) of points (N, 3) that light from the mirrored `emitter` (3,) reaches through the mirror's face."""
+        """Flag the points (N, 3) that the mirrored `emitter` (3,) lights through the mirror's face, (N,)."""
         before = points @ self.normal - self.distance
         share = -(emitter @ self.normal - self.distance) / (before - (emitter @ self.normal - self.distance))
         through = emitter + share[:, None] * (points - emitter)

@@ -43,7 +43,7 @@ _EAR_LEAN = np.radians(35.0)  # rad
 
 
 def box(low: ArrayLike, high: ArrayLike, albedo: float = OBJECT_ALBEDO) -> Mesh:
-    """Make a box between two opposite corners, 12 triangles facing outwards."""
+    """Make the mesh of a box between opposite corners `low` and `high` (3,) in mm: 12 triangles facing outwards."""
     (x0, y0, z0), (x1, y1, z1) = np.asarray(low, float), np.asarray(high, float)
     corners = np.array([(x, y, z) for z in (z0, z1) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))])
     triangles = [corners[[q[0], q[i], q[i + 1]]] for q in _QUADS for i in (1, 2)]
@@ -51,7 +51,7 @@ def box(low: ArrayLike, high: ArrayLike, albedo: float = OBJECT_ALBEDO) -> Mesh:
 
 
 def turned(mesh: Mesh, angle: float, shift: ArrayLike = (0.0, 0.0)) -> Mesh:
-    """Turn a mesh by `angle` (rad) about the table's normal, then shift it along the table."""
+    """Turn a mesh by `angle` in rad about the table's normal, z, and then shift it along the table by `shift` in mm."""
     cosine, sine = np.cos(angle), np.sin(angle)
     rotation = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
     normals = None if mesh.normals is None else mesh.normals @ rotation.T
@@ -59,13 +59,13 @@ def turned(mesh: Mesh, angle: float, shift: ArrayLike = (0.0, 0.0)) -> Mesh:
 
 
 def gauge_block(height_mm: float, size_mm: Sequence[float] = (70.0, 60.0)) -> Mesh:
-    """Make a gauge block of one height, its base centred on the origin."""
+    """Make the mesh of a block of `height_mm`, its base `size_mm` centred on the origin."""
     x, y = size_mm[0] / 2, size_mm[1] / 2
     return box((-x, -y, 0), (x, y, height_mm))
 
 
 def step_block(heights_mm: Sequence[float] = (40, 50, 60, 70), size_mm: Sequence[float] = (100.0, 60.0)) -> Mesh:
-    """Make steps side by side along x, each as wide as the next, highest last: one closed staircase."""
+    """Make the mesh of one staircase, its steps of `heights_mm` side by side along x and equally wide."""
     width = size_mm[0] / len(heights_mm)
     left, y = -size_mm[0] / 2, size_mm[1] / 2
     steps = [
@@ -76,7 +76,7 @@ def step_block(heights_mm: Sequence[float] = (40, 50, 60, 70), size_mm: Sequence
 
 
 def cylinder(diameter_mm: float, length_mm: float = 80.0, facets: int = 720) -> Mesh:
-    """Make a cylinder lying along x on the table, shaded as if it were round.
+    """Make the mesh of a cylinder lying along x on the table, its normals those of the round surface.
 
     Its facets leave the true surface by at most r π²/(4 n²) to either side: 0.12 µm for r = 25 mm.
     """
@@ -125,7 +125,7 @@ def stl(path: Path) -> Mesh:
 
 
 def face_mask(height_mm: float = 50.0) -> Mesh:
-    """Make a mask like a face with folded ears, 50,000 triangles, its nose `height_mm` above the table, forehead to +y.
+    """Make the mesh of a face-like mask with undercut ears, 50,000 triangles, its nose `height_mm` above the table.
 
     Smooth relief, and rims that hide what is beneath them (undercuts). The face is half an ellipsoid with brows, eyes,
     nose, lips and chin on it; each ear is a shell that rises from the side of the head and rolls back over itself.

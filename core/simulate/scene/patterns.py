@@ -60,7 +60,7 @@ class Pattern:
 
 
 def draw_pattern(pattern: Pattern, pose_cam_target: Pose, rays: Map) -> tuple[Map, Map]:
-    """Draw a plate as each pixel sees it: points (h, w, 3) in mm in the camera frame, and albedo (h, w).
+    """Compute for each pixel the point (h, w, 3) in mm on a plate, in the camera frame, and the plate's albedo (h, w).
 
     Where the plate is not seen, points are 0 and the albedo is the background's.
     """

@@ -22,7 +22,7 @@ ends."""
 
 
 def draw_triangles(triangles: Array, camera: Camera, rays: Map, depth: Map, face: NDArray[np.int32]) -> None:
-    """Draw `triangles` (T, 3, 3) in mm in the camera frame into `depth` and `face`, both (height, width).
+    """Render `triangles` (T, 3, 3) in mm, camera frame, into the maps `depth` and `face` (index), (height, width) each.
 
     Where a triangle is nearer than what `depth` holds, depth and the triangle's number are overwritten. Triangles that
     reach behind the camera are left out.

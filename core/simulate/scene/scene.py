@@ -76,7 +76,7 @@ class Mesh:
             set_field(self, "normals", frozen_array(self.normals, (len(self.triangles), 3, 3), "normals"))
 
     def moved(self, pose: Pose) -> Mesh:
-        """Transform the mesh to the frame that `pose` leads to."""
+        """Transform the mesh by `pose` to another frame."""
         triangles = pose.apply(self.triangles.reshape(-1, 3)).reshape(-1, 3, 3)
         normals = None if self.normals is None else self.normals @ pose.rotation.T
         return Mesh(triangles, self.albedo, normals)
@@ -94,7 +94,7 @@ class Sphere:
         set_field(self, "centre", frozen_array(self.centre, (3,), "centre"))
 
     def moved(self, pose: Pose) -> Sphere:
-        """Transform the ball to the frame that `pose` leads to."""
+        """Transform the sphere by `pose` to another frame."""
         return Sphere(pose.apply(self.centre[None])[0], self.radius, self.albedo)
 
 
@@ -120,14 +120,14 @@ class Scene:
         table_albedo: float = TABLE_ALBEDO,
         material: Material = MATT,
     ) -> Scene:
-        """Make a scene of objects given in table coordinates."""
+        """Make a scene in the camera frame of a table and objects given in the table's frame."""
         moved = [thing.moved(pose_cam_table) for thing in things]
         meshes = tuple(thing for thing in moved if isinstance(thing, Mesh))
         spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
         return cls(pose_cam_table, meshes, spheres, table_albedo, material)
 
     def moved(self, motion: Pose, *, with_table: bool = False) -> Scene:
-        """Move the objects of the scene by `motion` in the camera frame, with or without the table."""
+        """Move the objects of the scene by `motion` in the camera frame; the table moves too only if `with_table`."""
         table = self.pose_cam_table
         if with_table and table is not None:
             table = Pose(motion.rotation @ table.rotation, motion.apply(table.translation[None])[0])
@@ -168,7 +168,7 @@ class SurfaceMaps:
 
 
 def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> SurfaceMaps:
-    """Compute point, normal and albedo seen by each pixel centre of `camera`, along its exact distorted ray.
+    """Compute surface point, normal and albedo seen by each pixel of `camera`, along its distorted ray.
 
     `rays` is :func:`core.simulate.rays.ray_map` of the camera, computed here when it is not given.
     """

@@ -38,7 +38,7 @@ class ShadowCaster(NamedTuple):
 
     @classmethod
     def near_plane(cls, scene: Scene, plane: LightPlane, emitter: Array, axis: Array, reach: float) -> ShadowCaster:
-        """Select the occluders of `scene` within `reach` mm of `plane`, seen from `emitter` (3,) on it."""
+        """Collect what can shadow a light `plane`: triangles within `reach` mm of it, and all spheres."""
         triangles = scene.occluders
         off = triangles @ plane.normal - plane.d_mm
         triangles = triangles[(off.min(axis=1) <= reach) & (off.max(axis=1) >= -reach)]
@@ -49,7 +49,7 @@ class ShadowCaster(NamedTuple):
         return cls(np.array(emitter), frame, triangles, start, members, centres, radii)
 
     def visible(self, points: Array) -> NDArray[np.bool_]:
-        """Find which of `points` (N, 3) in mm the emitter sees: (N,) True there."""
+        """Flag the `points` (N, 3) in mm that the emitter sees past all triangles: (N,), True if seen."""
         visible: NDArray[np.bool_] = _sees(points, self)
         return visible
 

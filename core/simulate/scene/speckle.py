@@ -40,7 +40,7 @@ class Speckle:
         self._tile: Map = np.exp(spread * smooth - spread**2 / 2).astype(np.float32)
 
     def at(self, rows: NDArray[np.intp], columns: NDArray[np.intp], rng: np.random.Generator) -> Map:
-        """Return the factor at pixels (rows, columns), both (N,), of one picture.
+        """Return the speckle's factors (N,) on the light at pixels `rows`, `columns` (N,) of one picture.
 
         `rng` chooses its place in the tile.
         """

@@ -30,7 +30,7 @@ SPHERE_BACK_MM = 3.0
 
 
 def table_pose(setup: Setup = USUAL_SETUP) -> Pose:
-    """Make the pose of the table: under the work point, z towards the camera, tilted and turned by a few degrees."""
+    """Make the pose of the table in the camera frame: under the work point, z up to the camera, slightly tilted."""
     facing = Rotation.from_rotvec([np.pi, 0.0, 0.0])
     tilt = Rotation.from_euler("xyz", TABLE_TILT_DEG, degrees=True)
     further = Rotation.from_euler("xy", (setup.table_right_deg, setup.table_away_deg), degrees=True)
@@ -39,7 +39,7 @@ def table_pose(setup: Setup = USUAL_SETUP) -> Pose:
 
 
 def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
-    """Build the scene of a scenario, and the true figures of the object (mm, camera frame where a place is given)."""
+    """Build the scene of a scenario; also give the object's true figures in mm, by name, places in the camera frame."""
     pose = table_pose(scenario.setup)
     thing = _thing(scenario)
     things = () if thing is None else (thing,)

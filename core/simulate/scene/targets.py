@@ -28,13 +28,13 @@ NEAREST_MM, FARTHEST_MM = 430.0, 620.0
 
 
 def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Map, Map]:
-    """Compute points (h, w, 3) on a plate, and the room's light it reflects (h, w); white head-on gives `grey`."""
+    """Compute a plate's points (h, w, 3) in mm and the room's light (h, w) on it; head-on, white has `grey`."""
     points, albedo = draw_pattern(pattern, pose, rays)
     return points, albedo * room_shade(pose, grey)
 
 
 def room_shade(pose: Pose, grey: float) -> np.float32:
-    """Compute the grey level of a white plate in the room's light, `grey` if it faces the camera."""
+    """Compute the grey level of white on a plate at `pose` in the room's light; `grey` if it faces the camera."""
     return np.float32(grey * (DIFFUSE_SHARE + FRONT_SHARE * abs(pose.rotation[2, 2])))
 
 
@@ -47,7 +47,7 @@ class RenderContext(NamedTuple):
     lens: LensEffects = IDEAL_LENS
 
     def image(self, light: Map, points: Map) -> Map:
-        """Image light (h, w) of points (h, w, 3) in mm through the lens."""
+        """Image the light (h, w) of surface `points` (h, w, 3) in mm through the lens, with its blur."""
         rig = self.rig
         return self.lens.image(light, rig.blur_px, rig.camera, points[..., 2], rig.scale)
 
@@ -55,7 +55,7 @@ class RenderContext(NamedTuple):
 def camera_picture(
     context: RenderContext, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator, bow_mm: float = 0.0
 ) -> Picture:
-    """Render one view of a target with the lasers off; `grey` is the level of a white plate that faces the camera.
+    """Render one view of a target with the lasers off; white that faces the camera has grey level `grey`.
 
     The target's left and right edges are bent by `bow_mm` out of its plane.
     """
@@ -68,7 +68,7 @@ def camera_picture(
 def plane_pictures(
     context: RenderContext, plate: tuple[Pattern, float], pose: Pose, grey: float, seed: int, index: int
 ) -> dict[str, Picture]:
-    """Render the pictures of pose `index` of the plane target, by the ending of their names.
+    """Render the pictures of the plane target at pose number `index`, fan on and off, by the ending of their names.
 
     With the fan on it is "", else "_off".
 
@@ -109,7 +109,7 @@ def bare_fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
 
 
 def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
-    """Multiply laser light by a speckle pattern of its own; `rng` chooses which."""
+    """Multiply laser light (h, w) by a new speckle pattern that `rng` chooses."""
     if rig.optics.speckle_contrast <= 0:
         return light
     speckle = Speckle(rig.optics.speckle_contrast, rig.grain_px, rng)
@@ -119,7 +119,7 @@ def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
 
 
 def fan_centres(rig: Rig, poses: int, nearest_mm: float = NEAREST_MM, farthest_mm: float = FARTHEST_MM) -> list[Array]:
-    """Choose points (3,) in mm on the fan's middle line, depths from near to far in mixed order."""
+    """Choose `poses` points (3,) in mm on the middle line of the fan, their depths spread and in mixed order."""
     depths = nearest_mm + (farthest_mm - nearest_mm) * ((np.arange(poses) * GOLDEN_SHARE + 0.3) % 1)
     middle = rig.fan.planes[rig.fan.lines // 2].pi
     return [np.array([0.0, (1 - middle[2] * z) / middle[1], z]) for z in depths]

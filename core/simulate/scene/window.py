@@ -22,10 +22,7 @@ CLEARANCE_MM = 0.05
 
 
 def window_places(towards: Array, half_angle: float) -> Array:
-    """Spread unit vectors (PLACES, 3) evenly over a disk of this half angle in rad about `towards` (3,).
-
-    As in a sunflower.
-    """
+    """Spread unit vectors (PLACES, 3) evenly over a disk of `half_angle` in rad about the direction `towards` (3,)."""
     middle = towards / np.linalg.norm(towards)
     aside = np.cross(middle, [0.0, 0.0, 1.0] if abs(middle[2]) < 0.9 else [1.0, 0.0, 0.0])
     aside /= np.linalg.norm(aside)
@@ -38,7 +35,7 @@ def window_places(towards: Array, half_angle: float) -> Array:
 
 
 def visible_window_share(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
-    """Compute the share (h, w) of the window at `places` (P, 3) that each pixel's point sees past all objects."""
+    """Compute the share (h, w) of a window's `places` (P, 3) that each pixel's point sees past all objects."""
     hulls = [_hull(mesh.triangles) for mesh in scene.meshes]
     starts = np.cumsum([0, *map(len, hulls)]).astype(np.int64)
     planes = np.concatenate(hulls) if hulls else np.zeros((0, 4))
@@ -47,9 +44,9 @@ def visible_window_share(scene: Scene, maps: SurfaceMaps, places: Array) -> Map:
 
 
 def hand_hides(maps: SurfaceMaps, towards: Array, half_angle: float, hand: tuple[Array, float]) -> Map:
-    """Compute the share (h, w) of a window of this half angle about `towards` that a hand hides.
+    """Compute the share (h, w) of a window that a hand, a ball of centre (3,) and radius in mm, hides from each point.
 
-    This is its middle (3,) and radius.
+    The window is a disk of `half_angle` in rad about the direction `towards`.
     """
     middle, radius = hand
     way = middle.astype(np.float32) - maps.points

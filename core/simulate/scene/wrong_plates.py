@@ -17,7 +17,7 @@ _ROUNDS = 4
 
 
 def scaled(pattern: Pattern, larger: float) -> Pattern:
-    """Enlarge all lengths of the pattern by a share."""
+    """Multiply all lengths of the printed pattern by 1 + `larger`."""
     if not larger:
         return pattern
     dots = None if pattern.dots is None else pattern.dots * (1 + larger)
@@ -31,7 +31,7 @@ def scaled(pattern: Pattern, larger: float) -> Pattern:
 
 
 def rays_to_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> Map:
-    """Compute rays (h, w, 2) that meet a flat plate where `rays` meet the bowed one: it is drawn as flat along them."""
+    """Compute the rays (h, w, 2) that meet a flat plate where `rays` meet it bowed by `bow_mm`: to draw it bowed."""
     if not bow_mm:
         return rays
     on_plate, met = _met_on_bowed(pattern, pose, rays, bow_mm)
@@ -43,7 +43,7 @@ def rays_to_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> Map
 
 
 def points_on_bowed(pattern: Pattern, pose: Pose, rays: Map, points: Map, bow_mm: float) -> Map:
-    """Compute points (h, w, 3) in mm where `rays` meet the bowed plate; `points` on the flat one where they do not."""
+    """Compute points (h, w, 3) in mm where `rays` meet the bowed plate; else `points`, those on the flat one."""
     if not bow_mm:
         return points
     on_plate, met = _met_on_bowed(pattern, pose, rays, bow_mm)
