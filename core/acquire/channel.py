@@ -13,5 +13,5 @@ CHANNELS: Final = get_args(Channel)
 
 
 def is_difference(channel: str | None) -> bool:
-    """Whether a channel is a difference of two, in which targets cannot be seen."""
+    """Whether a channel is a difference of two colours, in which targets cannot be seen; not for None."""
     return channel is not None and channel not in PLAIN_CHANNELS

@@ -18,7 +18,7 @@ MOST_THREADS = 8
 def read_ahead(
     paths: Iterable[Path], read: Callable[[Path], T], *, threads: int | None = None
 ) -> Iterator[tuple[Path, T]]:
-    """Yield each path with what `read` makes of it, in the order of `paths`.
+    """Yield each path with what `read` returns for it, in the order of `paths`, the next few being read on threads.
 
     While the caller works on one, the next few are read on `threads` threads, one for each core; how many wait does not
     depend on how many there are, nor does memory. An exception that `read` raises is raised here when that file's turn

@@ -16,18 +16,18 @@ _NONE_SHARE = 4
 
 
 def has_colours(picture: NDArray[Any]) -> bool:
-    """Whether a picture has colours: neither (height, width) alone, nor grey with or without alpha."""
+    """Whether a picture array has colour channels: neither (height, width), nor grey with or without alpha."""
     return picture.ndim == 3 and picture.shape[2] >= 3
 
 
 def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.bool_]:
-    """Mask (height, width) of the pixels of a colour picture that are saturated in anything `to_grey` uses."""
+    """Flag the pixels (height, width) of a colour picture saturated in one of the colours that `channel` is made of."""
     names = PLAIN_CHANNELS if channel is None else channel.split("-")
     return np.asarray((picture[:, :, [_BGR[name] for name in names]] == np.iinfo(picture.dtype).max).any(axis=2))
 
 
 def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[Any]:
-    """Compute grey levels (height, width) of a picture in OpenCV's order of colours.
+    """Compute grey levels (height, width) of a picture with OpenCV's order of colours, by `channel` or its grey.
 
     Parameters
     ----------

@@ -24,15 +24,15 @@ class KeptSettings:
     _kept: Mapping[_Key, SourceSettings] = field(default_factory=dict)
 
     def settings(self, choice: SourceChoice, step: Step) -> SourceSettings:
-        """Return the last settings of this source for this step; none, if there are none."""
+        """Return the settings last used with the source `choice` in this `step`; all None if there are none."""
         return self._kept.get((choice.kind, choice.id, step), SourceSettings())
 
     def with_settings(self, choice: SourceChoice, step: Step, settings: SourceSettings) -> KeptSettings:
-        """Replace the settings of this source for this step."""
+        """Return a copy in which the source `choice` has these `settings` in this `step`."""
         return KeptSettings({**self._kept, (choice.kind, choice.id, step): settings})
 
     def to_text(self) -> str:
-        """Write all settings as JSON."""
+        """Write the settings of all sources and steps as a text of JSON."""
         rows = [
             {"kind": kind, "id": identifier, "step": step, "settings": _plain(settings)}
             for (kind, identifier, step), settings in sorted(self._kept.items())
@@ -41,7 +41,7 @@ class KeptSettings:
 
     @classmethod
     def from_text(cls, text: str) -> KeptSettings:
-        """Read the text of `to_text`; rows of another version in another form are left out."""
+        """Read the settings that `to_text` wrote; entries in another version's form are left out."""
         try:
             rows = json.loads(text)
         except ValueError:

@@ -31,11 +31,11 @@ class Pace:
         self._last: float | None = None
 
     def restart(self) -> None:
-        """Restart: the next frame is due at once."""
+        """Restart the clock: the next frame is due at once."""
         self._last = None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until the next frame is due, at most for `timeout_s`; True if it is."""
+        """Wait until the next frame is due, at most `timeout_s`; returns whether it is due."""
         now = self._clock()
         due = now if self._last is None or self.rate_hz <= 0 else max(now, self._last + 1 / self.rate_hz)
         if due - now > timeout_s:

@@ -71,11 +71,11 @@ class ReplaySource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """Rate alone."""
+        """Settings that a replay has: its rate alone."""
         return Capabilities(rate_hz=ANY_RATE_HZ)
 
     def open(self) -> None:
-        """Check that the folder is there; frames are counted anew."""
+        """Check that the folder is there, and count frames from 0; InputError if it is not."""
         if not self._folder.is_dir():
             what = (
                 Message("source.file_not_folder", "this is a file, not a folder")
@@ -90,19 +90,19 @@ class ReplaySource:
         self._list()
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set the rate (default: 10 Hz; 0: as fast as it is read); there is nothing else to set."""
+        """Set the replay's rate (default 10 Hz; 0: as fast as it is read), its only setting."""
         self.capabilities.check(settings, self.name)
         if settings.rate_hz is not None:
             self._pace.rate_hz = settings.rate_hz
 
     def prepare(self, step: Step) -> None:
-        """Go to the beginning of the pictures of a step."""
+        """Go to the first picture of this `step` in the folder."""
         self._step = step
         self._at = self._shown = 0
         self._list()
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Show the pictures taken under these lasers; False if there are none: then all others are shown."""
+        """Show pictures taken with these lasers on; False if the folder has none, and all others are shown."""
         swept = lasers.hand and not self._lasers.hand
         darkened = self._lasers.fan and not lasers.fan
         self._lasers = lasers
@@ -114,7 +114,7 @@ class ReplaySource:
         return self._list()
 
     def read(self, timeout_s: float) -> Frame | None:
-        """Return the next frame; raises Ended after the last one, and InputError for a damaged one."""
+        """Return the next picture as a frame; Ended after the last one, InputError for a damaged one."""
         if self._at >= len(self._paths):
             if not (self._loops or self._rests) or not self._paths:
                 raise Ended
@@ -131,7 +131,7 @@ class ReplaySource:
         return frame
 
     def close(self) -> None:
-        """Forget the picture read last."""
+        """Close the replay: drop the picture decoded last."""
         self._decoded = None
 
     @property

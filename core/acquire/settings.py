@@ -58,7 +58,7 @@ class Region:
 
     @property
     def message(self) -> Message:
-        """Text of the region."""
+        """Text that tells size and place of the region, for messages."""
         return Message(
             "source.region", "{width} × {height} pixels from column {left}, row {top}",
             width=self.width, height=self.height, left=self.left, top=self.top,
@@ -141,11 +141,11 @@ class SourceSettings:
         return not (self.trigger is None and self.pixel_format is None and self.region is None)
 
     def only(self, names: Sequence[str]) -> SourceSettings:
-        """Select the settings with one of these names."""
+        """Keep the settings whose names are in `names`; the others become None."""
         return SourceSettings(**{name: value for name, value in self.stated.items() if name in names})
 
     def updated(self, newer: SourceSettings) -> SourceSettings:
-        """Replace settings by those that `newer` has."""
+        """Replace settings by those of `newer` that are not None."""
         return replace(self, **newer.stated)
 
 
@@ -187,7 +187,7 @@ class Capabilities:
         return tuple(name for name, can in there.items() if can)
 
     def check(self, settings: SourceSettings, where: str) -> None:
-        """Raise InputError with one sentence unless a source called `where` can take all of `settings`."""
+        """Raise InputError if one of `settings` that is not None cannot be set; messages call the source `where`."""
         for name, value in settings.stated.items():
             if name not in self.names:
                 raise no_such_setting(name, where)
@@ -203,7 +203,7 @@ class Capabilities:
 
 
 def no_such_setting(name: str, where: str) -> InputError:
-    """Make the error for a setting that a source does not have."""
+    """Make the error that the source called `where` does not have the setting `name`."""
     return InputError(
         Message("source.setting_fixed", "the source does not let its {titles} be set", titles=TITLES[name][0]),
         where=where,
@@ -212,7 +212,7 @@ def no_such_setting(name: str, where: str) -> InputError:
 
 
 def check_number(name: str, value: float, limits: Limits, where: str) -> None:
-    """Raise InputError unless `value` is within `limits`."""
+    """Raise InputError unless `value` of the setting `name` is within `limits`; `where` names the source."""
     title, unit = TITLES[name]
     if not limits[0] <= value <= limits[1]:
         raise InputError(
@@ -230,7 +230,7 @@ def check_number(name: str, value: float, limits: Limits, where: str) -> None:
 
 
 def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) -> None:
-    """Raise InputError unless `value` is one of `choices`."""
+    """Raise InputError unless `value` of the setting `name` is one of `choices`; `where` names the source."""
     if value not in choices:
         raise InputError(
             Message(
@@ -245,7 +245,7 @@ def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) ->
 
 
 def check_region(region: Region, sensor: tuple[int, int], where: str) -> None:
-    """Raise InputError unless `region` lies within a sensor of (width, height)."""
+    """Raise InputError unless `region` lies within a `sensor` of (width, height) px; `where` names the source."""
     if region.left + region.width > sensor[0] or region.top + region.height > sensor[1]:
         raise InputError(
             Message(

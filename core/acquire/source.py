@@ -118,30 +118,22 @@ class FrameSource(Protocol):
         """Settings that the source has; exact limits only while it is open."""
 
     def open(self) -> None:
-        """Open the source for reading, also again after `close` or `Unplugged`.
-
-        InputError says what to do if it fails.
-        """
+        """Open the source for reading, also again after `close` or `Unplugged`; InputError if that fails."""
 
     def configure(self, settings: SourceSettings) -> None:
-        """Change the settings that are not None, before `open` or after it.
-
-        InputError if there is no such setting or value.
-        """
+        """Change the settings that are not None, before or after `open`; InputError if one cannot be set."""
 
     def prepare(self, step: Step) -> None:
-        """Announce the step that will be recorded. Only what knows its own scene (simulated rig, replay) acts on it."""
+        """Announce the step to be recorded next; only simulated rigs and replays change their scene by it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Switch the lasers; False if the user must do so. True: the source has done it itself; False: a person
-        must.
-        """
+        """Switch the lasers, and return whether the source has done it; if False, the user must."""
 
     def read(self, timeout_s: float) -> Frame | None:
-        """Return the next frame, or None if there is none within `timeout_s`; raises Unplugged and Ended."""
+        """Return the next frame; None if none comes within `timeout_s`; raises Unplugged, or Ended at the end."""
 
     def close(self) -> None:
-        """Release the source; harmless when it is closed already."""
+        """Release the source; does nothing if it is closed already."""
 
 
 @runtime_checkable
@@ -150,7 +142,7 @@ class WaitingSource(FrameSource, Protocol):
 
     @property
     def waits(self) -> bool:
-        """Whether the next frame waits until it is read, at the present rate."""
+        """Whether the source exposes its next frame only when the last one was read, at its present rate."""
 
     def go_on(self, frame: Frame) -> None:
-        """Continue: the content of a frame was taken, or is useless."""
+        """Let the scene go on: the content of `frame` was recorded, or cannot be used."""

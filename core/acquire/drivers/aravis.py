@@ -32,7 +32,7 @@ SYSTEM_PACKAGES = Path("/usr/lib/python3/dist-packages")
 
 
 def is_missing() -> bool:
-    """Whether Aravis cannot be used on this computer; nothing of it is loaded to know."""
+    """Whether Aravis is not installed in a usable version; found without loading any of it."""
     try:
         _introspection()
     except (ImportError, ValueError):
@@ -56,7 +56,7 @@ def aravis() -> Any:
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """List identifier, name, and kind of connection of each camera that answers; InputError if Aravis is missing."""
+    """List identifier, name and kind of connection of each camera that Aravis finds; InputError without it."""
     module = aravis()
     module.update_device_list()
     return [

@@ -29,7 +29,7 @@ TICKS = "GevTimestampTickFrequency"
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """List serial number, name and kind of connection of each Basler camera that is plugged in.
+    """List serial number, name and kind of connection of each Basler camera that is plugged in; [] if there is none.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def list_cameras() -> list[tuple[str, str, str]]:
 
 
 def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDriver:
-    """Open the camera with a serial number; "" is the first one found.
+    """Open the Basler camera with the serial number `serial`; "" opens the first one found.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDri
 
 
 def pylon_module() -> Any:
-    """Import pypylon; InputError says what to install if it is missing."""
+    """Import and return the module pypylon; InputError says what to install if it is missing."""
     try:
         return importlib.import_module(f"{MODULE}.pylon")
     except ImportError as missing:

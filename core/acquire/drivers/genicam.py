@@ -67,16 +67,16 @@ class Driver(Protocol):
     features: Features
 
     def start(self) -> None:
-        """Start taking pictures."""
+        """Start the camera taking pictures."""
 
     def stop(self) -> None:
-        """Stop taking pictures, so that their format can change."""
+        """Stop the camera taking pictures, so that their format can be changed."""
 
     def grab(self, timeout_s: float) -> Grabbed | None:
-        """Return the next frame; None if there is none within the time."""
+        """Return the camera's next frame; None if there is none within `timeout_s`."""
 
     def gone(self) -> bool:
-        """Whether the camera is disconnected; called when no frame comes."""
+        """Whether the camera is disconnected; asked when no frame comes."""
 
     def close(self) -> None:
         """Release the camera, also when it is disconnected."""
@@ -93,11 +93,11 @@ class FrameNumbers:
         self._last: int | None = None
 
     def restart(self) -> None:
-        """Start anew: there is no number before the next one."""
+        """Forget the last frame number: no frame counts as missing before the next one."""
         self._last = None
 
     def missing_before(self, number: int) -> int:
-        """Count the frames missing between the last number and this one."""
+        """Count the frames missing between the number of the last call and `number`; 0 if unknown."""
         last, self._last = self._last, number
         if last is None or number == last:
             return 0
@@ -144,7 +144,7 @@ class GenICamSource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """Settings of the open camera; none while it is closed."""
+        """Settings that the open camera has, with their limits; none while it is closed."""
         if self._driver is None:
             return Capabilities()
         try:
@@ -153,7 +153,7 @@ class GenICamSource:
             raise self._gone(str(problem)) from problem
 
     def open(self) -> None:
-        """Find the camera, open it and start it."""
+        """Find the camera, open it and let it take pictures."""
         self.close()
         driver = self._connect()
         self.name = driver.name
@@ -177,7 +177,7 @@ class GenICamSource:
         self._driver = driver
 
     def configure(self, settings: SourceSettings) -> None:
-        """Change the settings that the camera has, now or when it is opened; it is stopped for a moment if needed."""
+        """Change these camera settings, now or when it is opened; it stops for a moment if one of them needs it."""
         driver = self._driver
         if driver is not None:
             try:
@@ -199,11 +199,11 @@ class GenICamSource:
         """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Return False: the user must switch them."""
+        """Return False: the user must switch the lasers of a real rig."""
         return False
 
     def read(self, timeout_s: float) -> Frame | None:
-        """Return the next frame, None if there is none within the time; Unplugged when the camera is gone."""
+        """Return the camera's next frame; None if none comes within `timeout_s`; Unplugged when the camera is gone."""
         driver = self._driver
         if driver is None:
             raise self._unplugged(Message("camera.not_open", "it is not open"))

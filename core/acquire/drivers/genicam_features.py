@@ -39,32 +39,32 @@ class Features(Protocol):
     """Features of a camera by name. Asking for one that it does not have is an error of the caller's."""
 
     def has(self, name: str) -> bool:
-        """Whether there is such a feature, and it can be used now."""
+        """Whether the camera has a feature of this `name` that can be used now."""
 
     def number(self, name: str) -> float:
-        """Return the value of a number."""
+        """Return the value of the number feature `name`."""
 
     def limits(self, name: str) -> tuple[float, float, float]:
-        """Return smallest and largest value of a number, and its step: 0 if it has none."""
+        """Return smallest value, largest value and step of the number feature `name`; step 0 if it has none."""
 
     def set_number(self, name: str, value: float) -> None:
-        """Set a number."""
+        """Set the number feature `name` to `value`."""
 
     def entries(self, name: str) -> tuple[str, ...]:
-        """List the entries that can be chosen now."""
+        """List the entries of the choice feature `name` that can be chosen now."""
 
     def entry(self, name: str) -> str:
-        """Return the chosen entry."""
+        """Return the entry chosen of the choice feature `name`."""
 
     def choose(self, name: str, entry: str) -> None:
-        """Choose an entry."""
+        """Choose `entry` of the choice feature `name`."""
 
     def run(self, name: str) -> None:
-        """Execute a command."""
+        """Execute the command feature `name`."""
 
 
 def capabilities_of(features: Features) -> Capabilities:
-    """Read the settings that a camera has now, with their limits."""
+    """Read which settings a camera has now, with their limits."""
     limits = {name: _limits(features, name) for name in _NUMBERS}
     can_trigger = features.has("TriggerMode") and features.has("TriggerSource")
     return Capabilities(
@@ -79,7 +79,7 @@ def capabilities_of(features: Features) -> Capabilities:
 
 
 def make_grey(features: Features, where: str) -> str:
-    """Set the camera to grey levels, or else to colours that can be read, and return its pixel format.
+    """Set a camera to a grey pixel format, else to a readable colour one, and return its name.
 
     Raises
     ------
@@ -103,7 +103,9 @@ def make_grey(features: Features, where: str) -> str:
 
 
 def apply(features: Features, settings: SourceSettings, where: str) -> None:
-    """Change all `settings` of the camera called `where`; it must not stream if they stop the stream.
+    """Change those `settings` of a camera that are not None; messages call it `where`.
+
+    It must not stream if they stop the stream.
 
     Raises
     ------
@@ -126,7 +128,7 @@ def apply(features: Features, settings: SourceSettings, where: str) -> None:
 
 
 def sensor_size(features: Features) -> tuple[int, int] | None:
-    """Read (width, height) within which a region can be chosen; None if it cannot."""
+    """Read (width, height) in px of the sensor; None if no region can be chosen on it."""
     if not (features.has("Width") and features.has("Height")):
         return None
     if features.limits("Width")[0] == features.limits("Width")[1] and not features.has("OffsetX"):

@@ -38,14 +38,14 @@ _SEPARATOR = "#"
 
 
 def producers() -> tuple[Path, ...]:
-    """Find the producers that the makers' programs have installed on this computer."""
+    """Find the GenTL producers, drivers of camera makers, that are installed on this computer."""
     folders = [Path(text) for text in os.environ.get(PATH, "").split(os.pathsep) if text]
     found = [path for folder in folders if folder.is_dir() for path in sorted(folder.glob("*.cti"))]
     return tuple(dict.fromkeys(found))
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
-    """List identifier, name, and maker and kind of connection of each camera that is found.
+    """List identifier, name, and maker and connection of each camera that the GenTL producers find.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def list_cameras() -> list[tuple[str, str, str]]:
 
 
 def connect(identifier: str) -> GenTLDriver:
-    """Open a camera.
+    """Open the camera of this identifier or serial number by a GenTL producer; "" opens the first one found.
 
     Parameters
     ----------

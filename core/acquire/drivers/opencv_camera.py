@@ -41,7 +41,7 @@ Capture = Any
 
 
 def capture_of(address: str) -> Capture:
-    """Open OpenCV's capture of a camera's number, a file or a network address; "" is camera 0."""
+    """Open OpenCV's capture of a camera number, a video file or a network address; "" is camera 0."""
     if not address or address.isdigit():
         return cv2.VideoCapture(int(address or 0))
     if "://" in address:
@@ -56,14 +56,14 @@ def capture_of(address: str) -> Capture:
 
 
 def opencv_name(address: str) -> str:
-    """Make the displayed name of a source of this address."""
+    """Make the displayed name of a source: "camera N" of a number, the name of a file, a network address as it is."""
     if not address or address.isdigit():
         return f"camera {int(address or 0)}"
     return address if "://" in address else Path(address).name
 
 
 def exposure_of(capture: Capture, exposure_ms: float) -> tuple[float, float]:
-    """Return a backend's value for manual exposure, and `exposure_ms` in its unit."""
+    """Return the value that sets a capture to manual exposure, and `exposure_ms` in the unit of its backend."""
     if capture.getBackendName() in ("DSHOW", "MSMF"):
         return 0.25, log2(exposure_ms / 1000)
     return 1.0, exposure_ms * 10  # V4L2: units of 100 µs
@@ -144,11 +144,11 @@ class OpenCVSource:
 
     @property
     def capabilities(self) -> Capabilities:
-        """Rate, and of a camera exposure and gain; OpenCV's driver shows only when set which of them it takes."""
+        """Settings that can be tried: the rate, and for a camera exposure and gain, which its driver may refuse."""
         return FILE if self._is_file else CAMERA
 
     def open(self) -> None:
-        """Open the source; InputError says what to do when it cannot be opened."""
+        """Open the camera, file or address; InputError says what to do if that fails."""
         self.close()
         capture = self._make(self._address)
         if not capture.isOpened():
@@ -175,11 +175,11 @@ class OpenCVSource:
         """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:
-        """Return False: the user must switch them."""
+        """Return False: the user must switch the lasers of a real rig."""
         return False
 
     def read(self, timeout_s: float) -> Frame | None:
-        """Return the next frame; Unplugged if there will be none, Ended at the end of a file."""
+        """Return the next frame, None if none comes in time; Unplugged if the camera is gone, Ended after a file."""
         if self._is_file:
             return self._read_file(timeout_s)
         if self._grabber is None:

@@ -38,17 +38,19 @@ _LAYOUTS = {
 
 
 def readable(formats: Sequence[str]) -> tuple[str, ...]:
-    """Select the pixel formats that can be read, grey ones first, fewer bits first."""
+    """Select from `formats` the names that `decode` can read, grey ones first, and of these fewer bits first."""
     return tuple(name for name in _LAYOUTS if name in formats)
 
 
 def is_grey(name: str) -> bool:
-    """Whether a pixel format is grey and can be read."""
+    """Whether a pixel format of this name is grey and can be read."""
     return name in _LAYOUTS and _LAYOUTS[name].channels == 1
 
 
 def decode(data: NDArray[Any], name: str, width: int, height: int, channel: Channel | None = None) -> Picture:
-    """Decode grey levels (height, width) of a buffer in the format `name`; 8 and 16 bit grey is the buffer itself.
+    """Decode a camera's buffer in the pixel format `name` to grey levels (height, width).
+
+    Grey of 8 or 16 bits is the buffer itself.
 
     Parameters
     ----------
