@@ -12,7 +12,7 @@ OURS = Origin("trisect", __version__)
 
 
 def failure(origin: Origin, name: str, error: Exception) -> Message:
-    """Make the message that a package's code failed."""
+    """Make the message that code of an installed package failed with `error`; `name` is what it brings."""
     return Message(
         "plugin.failed",
         "{name} of the package {package} {version} failed: {why}",
@@ -24,10 +24,10 @@ def failure(origin: Origin, name: str, error: Exception) -> Message:
 
 
 def unusable(name: str, origin: Origin, why: Message | str) -> Message:
-    """Make the note that something a package brings cannot be used at all."""
+    """Make the note that what a package brings as `name` cannot be used, and why."""
     return note_of("plugin.unusable", name=name, package=origin.package, version=origin.version, why=why)
 
 
 def note_on_unusable(brought: Brought) -> Message:
-    """Make the note on an entry point, or a folder of ours, that cannot be used."""
+    """Make the note that an installed package's entry point, or one of the program's own folders, cannot be used."""
     return unusable(brought.name, brought.origin or OURS, brought.why)

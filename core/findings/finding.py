@@ -73,12 +73,12 @@ class Finding:
 
     @property
     def places(self) -> frozenset[str]:
-        """Names of the values in the note's text, and of the number it counts."""
+        """Names of the values that the note's text has places for, with that of the number it counts."""
         named = [name for text in (self.text, self.many) for _, name, _, _ in Formatter().parse(text) if name]
         return frozenset((*named, "n") if self.many else named)
 
     def note(self, **values: Any) -> Message:
-        """Make the note on this finding.
+        """Make the note on this finding, with `values` in the places of its text.
 
         Raises
         ------

@@ -24,7 +24,7 @@ class Doubt:
 
     @classmethod
     def of(cls, note: Message) -> Doubt:
-        """Make the doubt of a note on a finding.
+        """Make the doubt, a fact by which no measured value proves conformity, that this note tells.
 
         Raises
         ------
@@ -43,7 +43,7 @@ class Doubt:
 
     @classmethod
     def named(cls, fact: str) -> Doubt:
-        """Make the doubt of that name in a file, in short; of another version's name, by the name itself.
+        """Make the doubt, a fact by which nothing is proven, from its name in a file; an unknown name is its own note.
 
         Examples
         --------
@@ -59,23 +59,26 @@ Doubts: TypeAlias = tuple[Doubt, ...]
 
 
 def notes_of(doubts: Iterable[Doubt]) -> tuple[Message, ...]:
-    """List the notes on doubts."""
+    """List the notes on these doubts, facts by which no measured value proves conformity."""
     return tuple(doubt.note for doubt in doubts)
 
 
 def doubts_named(facts: Sequence[str], *, complete: bool) -> Doubts:
-    """Make the doubts of a file that states their names, or, in an earlier version, only whether there are any."""
+    """Make the doubts that a file states by the names `facts`; an unnamed one if the file may not name all of them.
+
+    Only files of an earlier version, not `complete`, tell whether there are doubts without naming them.
+    """
     return tuple(map(Doubt.named, facts or (() if complete else (of_proof.UNNAMED,))))
 
 
 def check_doubted(notes: Iterable[Message], doubts: Doubts) -> None:
-    """Raise ValueError if a note of a result is on a finding by which nothing is proven, and it has no doubts."""
+    """Raise ValueError if `notes` tell a fact by which nothing is proven, and `doubts` is empty."""
     if not doubts and (told := list(filter(None, map(fact_of, notes)))):
         raise ValueError(f"notes of a result tell {told}, by which nothing is proven, and it has no doubts")
 
 
 def notes_beside(doubts: Doubts, notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Select the notes of a file that a result with these doubts may have: facts decide, whatever the notes say."""
+    """Select the notes to keep beside `doubts`; if these are (), no note that tells a doubt is kept."""
     return tuple(note for note in notes if doubts or not fact_of(note))
 
 
@@ -136,7 +139,7 @@ class ScanFacts:
 
     @property
     def doubts(self) -> Doubts:
-        """Reasons why no measured value proves conformity; () where there are none.
+        """Facts by which no value measured in the scan proves conformity; () where there are none.
 
         That of the target's size, which is unconfirmed where it is not known, is the last.
 

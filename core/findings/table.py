@@ -36,7 +36,7 @@ def _of_wings() -> Mapping[str, Finding]:
 
 
 def finding_of(code: str) -> Finding | None:
-    """The row of the house, or of a wing, with this code; None where no row has it.
+    """Find the finding, a row of the program's table or of a wing's, with this code; None if there is none.
 
     The wings are asked last: their modules may import those that tell findings of the house when they are imported.
     """
@@ -44,7 +44,7 @@ def finding_of(code: str) -> Finding | None:
 
 
 def all_findings() -> Mapping[str, Finding]:
-    """Every row, of the house and of the wings, by its code."""
+    """Map every finding's code to its row, those of the program and of its wings."""
     return {**FINDINGS, **_of_wings()}
 
 
@@ -70,28 +70,28 @@ def note_of(code: str, /, **values: Any) -> Message:
 
 
 def weight_of(note: Message) -> Weight:
-    """Return the weight of a note, or of the gravest one inside it; one of another package is a caution."""
+    """Return the weight of a note's finding; for an unknown note the gravest within it, else CAUTION."""
     row = finding_of(note.code)
     told = [weight_of(one) for one in note.values.values() if isinstance(one, Message) and row is None]
     return max(told) if told else Weight.CAUTION if row is None else row.weight
 
 
 def is_grave(note: Message) -> bool:
-    """Whether a note, or the one inside it, is shown first and in red."""
+    """Whether a note has the greatest weight, GRAVE, so that it is shown first and in red."""
     return weight_of(note) == Weight.GRAVE
 
 
 def fact_of(note: Message) -> str:
-    """Return the fact by which nothing is proven that a note tells; "" for none."""
+    """Return the name of the fact by which nothing is proven that a note's finding tells; "" if it tells none."""
     row = finding_of(note.code)
     return "" if row is None else row.fact
 
 
 def without_notes_on(field: str, notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Remove the notes on this field of the record they are in."""
+    """Remove the notes whose findings are told of the record's field called `field`."""
     return tuple(note for note in notes if (row := finding_of(note.code)) is None or row.told_of != field)
 
 
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Sort notes, each once, the gravest first, those of one weight in their order."""
+    """Sort notes by weight, the gravest first, in their order if alike; a repeated note is kept once."""
     return tuple(sorted(dict.fromkeys(notes), key=lambda note: -weight_of(note)))

@@ -279,7 +279,7 @@ class Options:
 
     @property
     def for_camera(self) -> Options:
-        """Settings of the camera's calibration."""
+        """Settings of the camera's calibration; all others have their defaults."""
         return self._only("camera")
 
     @property
@@ -298,11 +298,11 @@ class Options:
         return self._only("plan")
 
     def solving(self, row_time_us: float | None = None) -> ReconstructOptions:
-        """Make the options of solving a scan; `row_time_us` is the time from one row of a picture to the next."""
+        """Make the settings of solving a scan; a picture's rows follow each other by `row_time_us` µs."""
         return ReconstructOptions(self.method, self.sigma_cut_mm, row_time_us)
 
     def run_settings(self, step: str) -> Mapping[str, Any]:
-        """Make the settings of a step for run.json."""
+        """Make the table of the settings of a `step`, by their names, for run.json."""
         told: dict[str, Any] = {}
         for row in settings_of(step):
             if row.setting.in_file:
@@ -311,7 +311,7 @@ class Options:
         return {**told, **run_exclusions(self.excluded_in(step))}
 
     def excluded_in(self, part: str) -> tuple[str, ...]:
-        """List the pictures of one part (camera, planes or scan) left out by hand, in the order of their names."""
+        """List the names, in order, of the pictures of `part` (camera, planes or scan) that are left out by hand."""
         return tuple(sorted(name for name in self.excluded if name.startswith(part + "/")))
 
     def _only(self, *steps: str) -> Options:
@@ -323,12 +323,12 @@ class Options:
 
 
 def settings_of(step: str) -> list[Row]:
-    """List the settings that a step's result rests on; those shared with most other steps last."""
+    """List the settings that a step's result rests on, those that few other steps use first."""
     return sorted((row for row in rows(Options) if step in row.setting.steps), key=lambda row: len(row.setting.steps))
 
 
 def run_value(kind: Kind, value: Any) -> Any:
-    """Convert a value for run.json: an object as a table, names in order, "automatic" for what is chosen."""
+    """Convert a setting's value for run.json: an object to a table, names sorted, None of an object to "automatic"."""
     if isinstance(kind, Values):
         if value is None:
             return "automatic"
@@ -337,7 +337,7 @@ def run_value(kind: Kind, value: Any) -> Any:
 
 
 def run_exclusions(names: Collection[str]) -> Mapping[str, Any]:
-    """Make the entry of run.json on what is left out by hand; nothing if nothing is."""
+    """Make run.json's entry of the pictures left out by hand, {"excluded": names in order}; {} if there are none."""
     return {"excluded": tuple(sorted(names))} if names else {}
 
 
@@ -354,7 +354,7 @@ class StatedTilt:
 
 
 def stated_stripe(width_px: float | None, contrast: float | None, where: str) -> StripeSettings | None:
-    """Make the stated stripe, None where nothing is stated; InputError that names `where` unless both or none are.
+    """Make the stripe of stated width in px and contrast; None if neither is stated, InputError if only one is.
 
     Parameters
     ----------

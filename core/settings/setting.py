@@ -95,7 +95,7 @@ class Flag:
 
     @property
     def word(self) -> str:
-        """First name as a parameter of a function: "stripe_width"."""
+        """First name of the flag as a parameter of a function: "stripe_width" of "--stripe-width"."""
         return self.name.partition("/")[0].removeprefix("--").replace("-", "_")
 
 
@@ -134,7 +134,7 @@ class Setting:
     keyed: bool = False
 
     def complaint(self, value: Any) -> Message | None:
-        """Give the reason why it cannot have this value; None if it can."""
+        """Make the sentence why the setting cannot have this `value`; None if it can."""
         possible = True
         if isinstance(self.kind, Number):
             possible = self.kind.above < value <= self.kind.most
@@ -144,7 +144,7 @@ class Setting:
 
 
 def described(kind: Kind, **known: Any) -> Mapping[str, Setting]:
-    """Make the metadata of a dataclass's field that is a setting; `known` as `Setting` has it."""
+    """Make the metadata by which a dataclass's field is a setting of this `kind`; `known` are fields of `Setting`."""
     return {_KEY: Setting(kind, **known)}
 
 
@@ -158,22 +158,22 @@ class Row:
 
     @property
     def key(self) -> str:
-        """Name of the setting itself, as forms use it."""
+        """Name of the setting without the table it is in, as forms use it."""
         return self.path[-1]
 
     @property
     def is_one(self) -> bool:
-        """Whether files have it as one value, not as the settings it consists of."""
+        """Whether files have the setting as one value, and not as the several settings it consists of."""
         return not isinstance(self.setting.kind, Values) or self.setting.kind.optional
 
     def value(self, table: Any) -> Any:
-        """Return the value of the setting in a table; None within what is None."""
+        """Return the setting's value in `table`; None if the table within it that holds the setting is None."""
         for name in self.path:
             table = None if table is None else getattr(table, name)
         return table
 
     def changed(self, table: T, value: Any) -> T:
-        """Set the value of the setting in a table."""
+        """Return a copy of `table` in which the setting has this `value`."""
         first, *within = self.path
         if within:
             value = replace(getattr(table, first), **{within[0]: value})
@@ -181,12 +181,12 @@ class Row:
 
 
 def rows(table: type) -> tuple[Row, ...]:
-    """List all settings of a dataclass, in its order; those within others are not among them."""
+    """List the settings of a dataclass in its order, without those of which one of them consists."""
     return tuple(Row((one.name,), one.metadata[_KEY], one.default) for one in fields(table) if _KEY in one.metadata)
 
 
 def rows_within(row: Row) -> tuple[Row, ...]:
-    """List the settings that one consists of; itself if it is one value."""
+    """List the settings that a setting consists of; the setting itself if it is a single value."""
     kind = row.setting.kind
     if not isinstance(kind, Values):
         return (row,)
