@@ -46,7 +46,7 @@ _SINCE_LATER = "skewness"
 
 
 def write_arrays(path: Path, arrays: Arrays) -> None:
-    """Write arrays to a file; InputError if they cannot be written."""
+    """Write named arrays to a file in numpy's npz format, whole or not at all; InputError if that fails."""
     data = io.BytesIO()
     np.savez(data, allow_pickle=False, **arrays)
     write_bytes(path, data.getvalue())
@@ -76,27 +76,27 @@ Schema = Mapping[str, Member]
 
 
 def real(*shape: int | str | None, optional: bool = False) -> Member:
-    """Schema of real numbers, all of them finite, in this shape."""
+    """Schema entry of an array of finite real numbers of this shape; None in it stands for any length."""
     return Member("f", shape, optional)
 
 
 def whole(*shape: int | str | None, optional: bool = False) -> Member:
-    """Schema of whole numbers in this shape."""
+    """Schema entry of an array of whole numbers of this shape; None in it stands for any length."""
     return Member("i", shape, optional)
 
 
 def truth(*shape: int | str | None, optional: bool = False) -> Member:
-    """Schema of truth values in this shape."""
+    """Schema entry of an array of booleans of this shape; None in it stands for any length."""
     return Member("b", shape, optional)
 
 
 def texts(*shape: int | str | None, optional: bool = False) -> Member:
-    """Schema of texts in this shape; without a shape a single one."""
+    """Schema entry of an array of texts of this shape; a single text without a shape."""
     return Member("U", shape, optional)
 
 
 def read_arrays(path: Path, schema: Schema, *, todo: Message) -> Arrays:
-    """Read the arrays of a schema from a file; others are left out.
+    """Read the arrays that `schema` names from a file, checked; others in the file are left out.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def _wrong(name: str, array: NDArray[Any], member: Member, sizes: dict[str, int]
 
 
 def wrong_shape(name: str, array: NDArray[Any], wanted: Sequence[int | str | None]) -> Message:
-    """Make the sentence for an array of another shape than `wanted`; None in it: any number."""
+    """Make the message that the array `name` has another shape than `wanted`, in which None stands for any length."""
     return Message(
         "file.array_shape", "the array {name} has shape {shape}, not {wanted}",
         name=name, shape=str(array.shape), wanted=" × ".join("n" if one is None else str(one) for one in wanted),
@@ -189,7 +189,7 @@ def _check_characters(codes: NDArray[np.uint32]) -> None:
 
 @contextmanager
 def unpacking(path: Path, *, todo: Message) -> Iterator[None]:
-    """Raise InputError where unpacking finds that an array of `path` is missing or that arrays do not fit together.
+    """Within the `with` block, turn errors of missing arrays or arrays that do not fit into an InputError about `path`.
 
     Within it, KeyError is for a missing array, ValueError and TypeError for what does not fit.
     """
@@ -207,7 +207,7 @@ def _missing(name: str) -> Message:
 
 
 def pack_centrelines(prefix: str, groups: Sequence[Sequence[Centreline]]) -> dict[str, NDArray[Any]]:
-    """Pack centrelines end to end into arrays: how many each group has, how long each is, and its points."""
+    """Pack groups of centrelines into arrays named by `prefix`: counts, lengths, and all points end to end."""
     pieces = [piece for group in groups for piece in group]
     packed: dict[str, NDArray[Any]] = {
         f"{prefix}_counts": np.array([len(group) for group in groups], dtype=np.int64),
@@ -221,7 +221,7 @@ def pack_centrelines(prefix: str, groups: Sequence[Sequence[Centreline]]) -> dic
 
 
 def centreline_members(prefix: str, groups: str | int) -> Schema:
-    """Make the schema of the arrays that `pack_centrelines` makes of so many groups."""
+    """Make the schema of the arrays that `pack_centrelines` names by `prefix`, for this number of groups."""
     pieces, points = f"{prefix} pieces", f"{prefix} points"
     return {
         f"{prefix}_counts": whole(groups),
@@ -238,7 +238,7 @@ def centreline_members(prefix: str, groups: str | int) -> Schema:
 
 
 def unpack_centrelines(prefix: str, arrays: Arrays) -> tuple[tuple[Centreline, ...], ...]:
-    """Unpack the groups of `pack_centrelines`; KeyError or ValueError if the arrays do not fit together."""
+    """Rebuild groups of centrelines from `pack_centrelines`' arrays; KeyError or ValueError if they do not fit."""
     lengths, counts = arrays[f"{prefix}_lengths"], arrays[f"{prefix}_counts"]
     check_parts(lengths, len(arrays[f"{prefix}_uv"]))
     check_parts(counts, len(lengths))
@@ -254,28 +254,28 @@ def unpack_centrelines(prefix: str, arrays: Arrays) -> tuple[tuple[Centreline, .
 
 
 def check_parts(lengths: NDArray[Any], total: int) -> None:
-    """Raise ValueError unless parts of these lengths, end to end, are `total` long."""
+    """Raise ValueError unless all `lengths` are at least 0 and their sum is `total`."""
     if np.any(lengths < 0) or np.any(lengths > total) or int(lengths.sum()) != total:
         raise ValueError(f"its parts do not make {total}")
 
 
 def pack_messages(messages: Sequence[Message | None]) -> NDArray[Any]:
-    """Pack messages into an array of texts; '' for none. `unpack_messages` reads it."""
+    """Pack messages into an array of texts for `unpack_messages`; None becomes ''."""
     return pack_texts([as_text(message) for message in messages])
 
 
 def unpack_messages(texts: NDArray[Any]) -> list[Message | None]:
-    """Unpack the messages of `pack_messages`; older files hold bare sentences."""
+    """Read the messages of `pack_messages`: '' is None, an older file's bare sentence has no code."""
     return [from_text(text) for text in unpack_texts(texts)]
 
 
 def pack_texts(texts: Sequence[str]) -> NDArray[Any]:
-    """Pack texts into an array; numpy's arrays of texts drop trailing NULs only."""
+    """Pack texts into an array of texts that keeps them, except for NUL characters at their ends."""
     return np.array(list(texts), dtype=np.str_) if texts else np.zeros(0, dtype="<U1")
 
 
 def unpack_texts(texts: NDArray[Any]) -> list[str]:
-    """Unpack the texts of `pack_texts`; ValueError if the array holds something else."""
+    """Read the texts of `pack_texts` as a list; ValueError if the array does not hold texts."""
     if texts.ndim != 1 or texts.dtype.kind != "U":
         raise ValueError("an array of texts holds something else")
     return [str(text) for text in texts.tolist()]

@@ -87,7 +87,7 @@ def write_bytes(path: Path, *data: bytes | memoryview, sync: bool = True) -> Non
 
 
 def write_beside(path: Path, put: Callable[[Path], None]) -> None:
-    """Have `put` write a new file beside `path`, and rename it to `path` when it is whole; raises as `write_bytes`."""
+    """Let `put` write a new file beside `path`, and rename it to `path` when it is whole; InputError if that fails."""
     if not path.name:
         raise cannot_write(path, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
     beside = beside_of(path)
@@ -103,12 +103,12 @@ def write_beside(path: Path, put: Callable[[Path], None]) -> None:
 
 
 def write_text(path: Path, text: str, *, sync: bool = True) -> None:
-    """Write `text` as UTF-8 with plain newlines; else as :func:`write_bytes`."""
+    """Write `text` as UTF-8 with plain newlines to `path`, whole or not at all; InputError if that fails."""
     write_bytes(path, text.encode("utf-8"), sync=sync)
 
 
 def remove(path: Path) -> None:
-    """Remove a file, if it is there; InputError if it cannot be."""
+    """Remove a file, if it is there; InputError if it cannot be removed."""
     try:
         held_files.remove(path)
     except OSError as error:
@@ -120,7 +120,7 @@ _LONGEST_NAME = 32
 
 
 def beside_of(path: Path) -> Path:
-    """Make a new name beside `path` for a file that will replace it.
+    """Make a hidden name beside `path`, not yet in use, for the file or folder that will replace it.
 
     Leftovers of a killed program are recognised by it.
     """
@@ -135,7 +135,7 @@ def _stem(name: str) -> str:
 
 @contextmanager
 def folder_beside(to: Path) -> Iterator[Path]:
-    """Make a folder beside `to` to be filled and renamed to it; it is removed in the end with all that is left in it.
+    """Make a folder beside `to` for the `with` block to fill and rename; at its end what is left there is removed.
 
     Raises
     ------
@@ -170,14 +170,14 @@ def make_folder(path: Path) -> Path:
 
 
 def make_inner_folder(folder: Path, name: str) -> Path:
-    """Make the folder `name` within `folder` as :func:`make_folder`; InputError if `folder` itself is gone."""
+    """Make the folder `name` in `folder` if missing; InputError if `folder` is gone or not writable."""
     if not folder.is_dir():
         raise vanished(folder)
     return make_folder(folder / name)
 
 
 def vanished(folder: Path) -> InputError:
-    """Make the error for a project whose folder was moved, or is on a disk that was taken out."""
+    """Make the error that the folder of a project is gone: moved, or on a disk that was taken out."""
     return InputError(
         Message("project.vanished", "the project's folder is gone; none is made in its place"),
         where=folder,
@@ -186,7 +186,7 @@ def vanished(folder: Path) -> InputError:
 
 
 def cannot_write(path: Path, error: OSError) -> InputError:
-    """Make the error for a file or folder that could not be written."""
+    """Make the error that the file or folder `path` could not be written, with the system's reason."""
     if isinstance(error, HeldOpen):
         path = Path(error.filename2 or error.filename or path)  # of several files the one that is held
     known = (
@@ -214,7 +214,7 @@ QUIET_S = 15 * 60.0
 
 
 def remove_leftovers(folder: Path, quiet_s: float = QUIET_S) -> None:
-    """Remove the hidden folders (`.NAME.anything`) beside `folder` in which it was to be made.
+    """Remove what killed programs have left beside `folder`: hidden folders that were to be renamed to it.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ _TESSELLATION = "core.files.cad_tessellation"
 
 
 def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Array:
-    """Read the corners (N, 3, 3) in mm of triangles over all faces in a STEP file, assemblies put together.
+    """Read a STEP file as triangles: their corners (N, 3, 3) in mm over all faces, assemblies put together.
 
     Parameters
     ----------

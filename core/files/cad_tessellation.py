@@ -7,7 +7,7 @@ import sys
 
 
 def main() -> int:
-    """Write the triangles of a STEP file as binary glTF."""
+    """Run as a program: write the triangles of the STEP file named first to the binary glTF file named second."""
     sys.modules["trimesh"] = None  # type: ignore[assignment]  # cascadio would load it, and scipy, to tell it of itself
     import cascadio
 

@@ -49,7 +49,7 @@ class Clash(WrongValue):
 
 
 def checked(schema: type[_Schema], tables: object, path: Path) -> _Schema:
-    """Check the content of `path` against a model or a union of models; InputError for the most telling error.
+    """Check `tables` read from `path` against a model and return it filled; InputError tells the most telling fault.
 
     The `description` of a field completes "… is <value>, not <description>".
     """
@@ -60,9 +60,10 @@ def checked(schema: type[_Schema], tables: object, path: Path) -> _Schema:
 
 
 def checked_json(schema: type[_Schema], tables: object, path: Path) -> _Schema:
-    """Check as `checked`, by the rules of JSON: lists become tuples and sets there, and tables dataclasses.
+    """Check the content of a JSON file against a dataclass or model and return it filled; InputError if it is wrong.
 
-    A dataclass is its own schema: its fields are annotated with what they may hold.
+    By the rules of JSON: lists become tuples and sets, and tables dataclasses. A dataclass is its own schema: its
+    fields are annotated with what they may hold.
     """
     try:
         return _adapter(schema).validate_json(json.dumps(tables))
@@ -82,7 +83,7 @@ def _adapter(schema: type[_Schema]) -> TypeAdapter[_Schema]:
 
 @contextmanager
 def fitting(path: Path, *, todo: Message | str = "") -> Iterator[None]:
-    """Raise InputError where a model refuses values of `path` that are each of its kind but do not fit each other."""
+    """Within the `with` block, turn errors of values that do not fit each other into an InputError about `path`."""
     try:
         yield
     except (ValueError, TypeError, LookupError, OverflowError) as error:

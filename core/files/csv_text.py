@@ -14,14 +14,14 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def csv_text(rows: Iterable[Sequence[Any]]) -> str:
-    """Write rows as CSV text, with text that would be a formula made harmless."""
+    """Write rows as CSV text; a text that a spreadsheet would take for a formula gets an apostrophe."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([harmless(cell) for cell in row] for row in rows)
     return text.getvalue()
 
 
 def harmless_table(text: str, separator: str) -> str:
-    """Make cells of a text table that would be formulas harmless; those that are numbers stay."""
+    """Put an apostrophe before cells of a text table that would be taken for formulas; numbers stay as they are."""
     rows = csv.reader(text.splitlines(), delimiter=separator)
     out = io.StringIO()
     writer = csv.writer(out, delimiter=separator, lineterminator="\n")

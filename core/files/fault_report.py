@@ -17,7 +17,7 @@ from core.messages import visible
 
 
 def write_fault_report(words: Sequence[str], error: BaseException) -> Path | None:
-    """Write a report of an unexpected error into the user's folder of logs; None where nothing can be written."""
+    """Write a report of an unexpected error into the user's folder of logs, and return its path; None if that fails."""
     now = datetime.now().astimezone()
     folder = Path(platformdirs.user_log_dir("trisect", appauthor=False))
     path = folder / f"fault-{now:%Y%m%d-%H%M%S-%f}.txt"

@@ -24,7 +24,7 @@ LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Lock `folder` for as long as this lasts; the system releases it even if the program is killed.
+    """Lock `folder` against other programs during the `with` block, waiting until it is free.
 
     The lock is of the folder itself and leaves no file; on Windows, which locks files only, of the hidden file HELD.
 
@@ -70,7 +70,7 @@ def _hold(handle: int) -> bool:
 
 
 def wait_for(handle: int) -> None:
-    """Wait until this program alone holds the lock of an open file or folder, until that is closed.
+    """Wait until this program alone has locked an open file or folder, which closing it releases.
 
     A disk of the network that cannot lock, and Windows, go without.
     """
@@ -83,7 +83,7 @@ def wait_for(handle: int) -> None:
 
 
 def sweep_leftovers(folder: Path) -> None:
-    """Remove half written files of a killed program from `folder`; call it with the folder locked."""
+    """Remove from `folder` the half-written files of killed programs; the caller has locked it."""
     for path in folder.iterdir():
         if LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):
@@ -93,7 +93,7 @@ def sweep_leftovers(folder: Path) -> None:
 
 
 def sweep_within(folder: Path) -> None:
-    """Sweep leftovers in the folders within `folder`, except those that another program is writing to."""
+    """Remove half-written files of killed programs from the folders within `folder`, each locked meanwhile."""
     for path in folder.iterdir():
         if path.is_dir() and not path.is_symlink():
             with contextlib.suppress(InputError, OSError), alone_in(path):

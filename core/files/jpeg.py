@@ -37,7 +37,7 @@ _ENDS_EARLY = Message("picture.ends_early", "ends early")
 
 
 def jpeg_damage(data: bytes) -> Message | None:
-    """Find damage in the bytes of a JPEG file, as the end of a sentence; None if there is none.
+    """Find damage in the bytes of a JPEG file and tell it as the end of a sentence; None if there is none.
 
     Walks the segments up to the scan, then looks for the end marker; a thumbnail may hold another.
     """
@@ -51,7 +51,7 @@ def jpeg_damage(data: bytes) -> Message | None:
 
 
 def compression_of(data: bytes, channel: Channel | None = None) -> Compression:
-    """Estimate the errors of a channel of a JPEG picture by rounding the terms of a block; none for any other file.
+    """Estimate the errors in grey levels that JPEG compression makes in a channel of a picture; none for other files.
 
     From the file's own tables: a term in steps of q is off by q/√12, on the average of the terms that make up a
     stripe. A JPEG holds brightness and two colours, each with its table, and the colours mostly in fewer pixels: a
@@ -111,7 +111,7 @@ def _components(head: bytes) -> list[tuple[int, int, int]]:
 
 
 def frame_sizes(data: bytes) -> Iterator[tuple[int, int]]:
-    """Yield (width, height) of each frame that is declared; ValueError where no marker is."""
+    """Yield (width, height) in px of each frame that a JPEG file declares; ValueError if it is damaged before that."""
     for marker, start, _ in _segments(data):
         if marker in _FRAMES and start + 5 <= len(data):
             height, width = (int.from_bytes(data[at : at + 2], "big") for at in (start + 1, start + 3))

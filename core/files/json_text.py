@@ -23,12 +23,12 @@ def to_json(value: object) -> str:
 
 
 def write_json(path: Path, value: object) -> None:
-    """Write `value` as JSON, whole or not at all; InputError if it cannot be written."""
+    """Write `value` as a JSON file, whole or not at all; InputError if it cannot be written."""
     write_text(path, to_json(value))
 
 
 def rounded(values: ArrayLike, digits: int) -> Any:
-    """Round `values` to nested lists: for bulky arrays that only serve plots and residual tables."""
+    """Round numbers to `digits` decimals, as nested lists, for bulky arrays that only plots and tables use."""
     return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
 
 

@@ -64,7 +64,7 @@ def check_file(path: Path, most: int = DATA_BYTES) -> None:
 
 
 def check_bytes(size: int, path: Path, most: int) -> None:
-    """Raise InputError if a file has more than `most` bytes."""
+    """Raise InputError if the `size` of a file in bytes is more than `most`; `path` names it."""
     if size > most:
         raise InputError(
             Message(
@@ -93,7 +93,7 @@ def check_toml(text: str, path: Path | str) -> None:
 
 
 def check_pixels(width: int, height: int, path: Path, most: int = PIXELS) -> None:
-    """Raise InputError if a picture declares no pixels, or more than `most`."""
+    """Raise InputError if a picture of `width` × `height` px has no pixels, or more than `most`."""
     if width < 1 or height < 1:
         raise InputError(Message("limits.no_pixels", "the picture has no pixels"), where=path)
     if width * height > most:

@@ -11,7 +11,7 @@ Way = Literal["hard link", "symbolic link", "copy"]
 
 
 def link(source: Path, target: Path, *, symbolic: bool = False) -> Way:
-    """Make `target` the same file as `source`, by a link or a copy, and return which.
+    """Put the file `source` at `target` too, by a hard link, a symbolic one or a copy; returns which of these it was.
 
     A hard link first: it needs no right on Windows, and stays whole if the source is moved or removed. Then, if
     `symbolic`, a link by name, which another disk takes, too; else, or where there are no links at all, a copy.

@@ -30,7 +30,7 @@ _TABLES = 1000
 
 @contextmanager
 def opened_head(path: Path) -> Iterator[Image.Image]:
-    """Open a picture to read its head alone, however many pixels it declares; raises as Pillow does."""
+    """Open a picture for reading its head alone, whatever number of pixels it declares; raises Pillow's errors."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # cameras have more pixels than it allows
         with Image.open(path) as picture:
@@ -38,7 +38,7 @@ def opened_head(path: Path) -> Iterator[Image.Image]:
 
 
 def declared_sizes(data: bytes) -> Iterator[tuple[int, int]]:
-    """Yield (width, height) of each picture in a PNG, BMP, JPEG or TIFF file.
+    """Yield (width, height) in px of each picture declared in the bytes of a PNG, BMP, JPEG or TIFF file.
 
     None for other files or a truncated head.
     """

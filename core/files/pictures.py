@@ -28,10 +28,7 @@ _WHITE = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
 
 
 def pgm_parts(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> tuple[bytes, memoryview]:
-    """Make head and pixels of a PGM file of (height, width) uint8 or uint16 grey levels.
-
-    ValueError for anything else.
-    """
+    """Make head and pixels of a PGM file of a picture (height, width); ValueError unless it is uint8 or uint16."""
     if picture.ndim != 2 or picture.dtype not in _WHITE:
         raise ValueError(f"a picture is 2-D uint8 or uint16, not {picture.ndim}-D {picture.dtype}")
     height, width = picture.shape
@@ -40,7 +37,7 @@ def pgm_parts(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> tuple[bytes, m
 
 
 def read_pgm(data: bytes) -> NDArray[np.uint8] | NDArray[np.uint16] | None:
-    """Read the grey levels of an undamaged PGM file; None if its white is neither 255 nor 65535."""
+    """Decode an undamaged PGM file to grey levels (height, width); None if white is neither 255 nor 65535."""
     width, height, white, begin = _head(data)
     if white == 255:
         return np.frombuffer(data, np.uint8, width * height, begin).reshape(height, width).copy()
@@ -103,12 +100,12 @@ if hasattr(cv2, "IMWRITE_PNG_FILTER"):  # since OpenCV 4.11; one filter for all 
 
 
 def is_picture(path: Path) -> bool:
-    """Whether `path` is named as a picture; hidden files are not."""
+    """Whether `path` ends like the name of a picture that can be read, and is not hidden."""
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".")
 
 
 def read_picture(path: Path, channel: Channel | None = None, mosaic: Pattern | None = None) -> Picture:
-    """Read a picture as grey levels.
+    """Read a picture file as grey levels (height, width), uint8 or uint16.
 
     Parameters
     ----------
@@ -133,7 +130,9 @@ def read_picture(path: Path, channel: Channel | None = None, mosaic: Pattern | N
 
 
 def decode_colours(data: bytes, path: Path, mosaic: Pattern | None = None) -> NDArray[Any]:
-    """Decode the bytes of a picture file with all channels; `path` names it in messages. Else as :func:`read_picture`.
+    """Decode a picture file's bytes with all channels: (height, width) or (height, width, 1 … 4) in OpenCV's order.
+
+    `path` names the file in messages. A raw picture of a `mosaic` has the colours of its mosaic interpolated.
 
     (height, width), or (height, width, 1 … 4) in OpenCV's order.
     A raw picture of a `mosaic` has the colours of its sites, between them their means.
@@ -178,7 +177,7 @@ def _decoded(data: bytes, path: Path) -> NDArray[Any]:
 
 
 def compression_of(path: Path, channel: Channel | None = None) -> Compression:
-    """Estimate the errors of a channel of a picture file by compression, see :func:`core.files.jpeg.compression_of`.
+    """Estimate the errors by compression of a channel of a picture file; none for one lossless or unreadable.
 
     Not at all for a file that is lossless or cannot be read.
     """
@@ -206,7 +205,7 @@ def write_picture(path: Path, picture: Picture) -> None:
 
 
 def picture_parts(path: Path, picture: Picture) -> tuple[bytes | memoryview, ...]:
-    """Encode a picture for the file `path`, in one piece or several; ValueError as `write_picture`."""
+    """Encode a picture as PNG or PGM, by the ending of `path`, in one piece or several; ValueError if it cannot be."""
     if path.suffix.lower() == ".pgm":
         return pgm_parts(picture)
     if path.suffix.lower() != ".png":

@@ -40,7 +40,7 @@ def resolved(path: Path) -> Path:
 
 
 def file_hash(path: Path) -> str:
-    """Compute SHA-256 in hex of the bytes of a file; raises as :func:`read_bytes`."""
+    """Compute SHA-256 in hex of a file's bytes; InputError if it cannot be read or is too large."""
     return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
@@ -79,12 +79,12 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
 
 
 def read_json(path: Path, *, todo: Message | None = None) -> Any:
-    """Read the content of a JSON file; InputError as `read_text`, or if it is no JSON."""
+    """Read and parse a JSON file; InputError if it cannot be read or is no JSON."""
     return json_of(read_text(path, todo=todo), path, todo=todo)
 
 
 def json_of(text: str, where: Path | str, *, todo: Message | None = None) -> Any:
-    """Parse a text of JSON; InputError if it is none, too deep, or has characters that are none."""
+    """Parse a text of JSON; InputError that names `where` if it is none, or is nested too deep."""
     check_json(text, where)
     try:
         value = json.loads(text)
@@ -99,12 +99,12 @@ def json_of(text: str, where: Path | str, *, todo: Message | None = None) -> Any
 
 
 def read_toml(path: Path, *, missing: Message = MISSING, todo: Message | None = None) -> dict[str, Any]:
-    """Read the tables of a TOML file; InputError as `read_text`, or if it is no TOML."""
+    """Read and parse a TOML file; InputError if it cannot be read or is no TOML."""
     return toml_of(read_text(path, missing=missing, todo=todo, most=TOML_BYTES), path)
 
 
 def toml_of(text: str, where: Path | str) -> dict[str, Any]:
-    """Parse the tables of a text of TOML; InputError if it is none, or too deep."""
+    """Parse a text of TOML; InputError that names `where` if it is none, or is nested too deep."""
     check_toml(text, where)
     try:
         return tomllib.loads(text)
@@ -114,7 +114,7 @@ def toml_of(text: str, where: Path | str) -> dict[str, Any]:
 
 
 def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[list[str]]:
-    """Parse the cells of a CSV file's lines; InputError if a cell is too long, or the lines are no table."""
+    """Parse the lines of a CSV file into rows of cells; InputError that names `path` if they are no table."""
     try:
         return list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
@@ -123,7 +123,7 @@ def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[lis
 
 
 def refused_path(error: Exception) -> InputError | None:
-    """Make the error for an error of the system that a path causes; None for any other."""
+    """Make the InputError for a system error that is due to a path; None for any other error."""
     if not isinstance(error, OSError) or error.errno not in _REFUSED or not isinstance(error.filename, str):
         return None
     return cannot_read(Path(error.filename), error)

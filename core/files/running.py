@@ -30,7 +30,7 @@ class Kernel(Protocol):
 
 
 def is_running(pid: int, since: datetime | None = None) -> bool:
-    """Whether the process `pid` runs; with `since`, also whether it ran then: numbers are reused later.
+    """Whether the process `pid` runs now, and, if `since` is given, ran already then: numbers are reused.
 
     `os.kill(pid, 0)`, which asks elsewhere, would end the process on Windows.
     """
@@ -48,7 +48,7 @@ def is_running(pid: int, since: datetime | None = None) -> bool:
 
 
 def runs_on_windows(kernel: Kernel, pid: int, since: datetime | None) -> bool:
-    """Whether the process runs, as `is_running`, on Windows.
+    """Whether the process `pid` runs on Windows now, and ran at `since`, if that is given.
 
     References
     ----------

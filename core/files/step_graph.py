@@ -79,7 +79,7 @@ class Step:
     in_project: bool = False
 
     def is_requested(self, there: Collection[str], asked: Collection[str]) -> bool:
-        """Whether the step is to be done with pictures of the parts `there`, if the steps `asked` are requested."""
+        """Whether the step is wanted: the parts it reads are `there`, and it is `asked` for if need be."""
         return all(part in there for part in self.reads) and (not self.on_request or self.name in asked)
 
 
@@ -127,14 +127,14 @@ class Place(Protocol[Stop]):
     """Place where steps are done: a recording set or a project."""
 
     def is_due(self, step: Step, /) -> bool:
-        """Whether a step is to be done, now that those before it have been."""
+        """Whether a step is to be done here, after all steps before it have been done."""
 
     def do(self, step: Step, /) -> Stop | None:
-        """Do a step; what is returned stops the work."""
+        """Do a step; returns None to go on, or what stops the work."""
 
 
 def do_steps(place: Place[Stop]) -> Stop | None:
-    """Do every step that a place wants, in the order of work; return what stopped it, if anything did."""
+    """Do all steps that are due at a place, in the order of work; returns what stopped them, None if nothing did."""
     for step in GRAPH:
         if place.is_due(step) and (stop := place.do(step)) is not None:
             return stop
@@ -157,7 +157,10 @@ def needed_by(page: str, *, shown: bool = False) -> tuple[str, ...]:
 
 
 def resting_on(result: str) -> tuple[str, ...]:
-    """List results that become invalid once `result` changes. The report stays: it is whole, and says what it is of."""
+    """List the results that are no longer valid once `result` changes; a report stays valid.
+
+    It is whole, and says what it is of.
+    """
     step = next((step for step in GRAPH if step.decides == result), None)
     return () if step is None else tuple(made for other in _behind(step) for made in other.makes)
 

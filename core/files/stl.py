@@ -23,7 +23,7 @@ _VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.MULT
 
 
 def read_corners(path: Path) -> Array:
-    """Read the corners (N, 3, 3) of the triangles in an STL file.
+    """Read the corners (N, 3, 3) of the triangles in an STL file, binary or text.
 
     Binary files are told by their length, for many begin with "solid" as those of text do.
 

@@ -87,7 +87,7 @@ KeptCause = Annotated[Source, PlainValidator(lambda kept: known_cause(_message(k
 
 
 def kept(message: Message | None) -> dict[str, Any] | str | None:
-    """Convert a message for a file: a text alone if it has no code, null for none."""
+    """Convert a message to what JSON holds: a table, a bare text if it has no code, None for None."""
     if message is None:
         return None
     return as_json(message) if message.code else str(message)
@@ -128,12 +128,12 @@ class CountedPose(ResultFile):
     translation_mm: Row3
 
     def pose(self) -> Pose:
-        """Make the pose of the target."""
+        """Make the pose of the target in the camera frame from the row's numbers."""
         return Pose.from_vector([*self.rotation_vector, *self.translation_mm])
 
 
 def counted_pose(view: ViewQuality | PlanePose, **figures: Any) -> dict[str, Any]:
-    """Make the row of a view or pose, with its figures of merit."""
+    """Make the row of a view or pose for a file: name, whether and why not used, `figures`, and the target's pose."""
     vector = view.pose.vector
     head = {"name": view.name, "used": view.used, "reason": kept(view.reason)}
     return head | figures | {"rotation_vector": vector[:3], "translation_mm": vector[3:]}
@@ -150,13 +150,13 @@ class BudgetRow(ResultFile):
     unit: str = "mm"
 
     def contributing(self, u: float) -> Contribution:
-        """Make the row with the contribution `u`."""
+        """Make the budget's contribution that this row describes, `u` being its standard uncertainty."""
         dof = math.inf if self.dof is None else self.dof
         return Contribution(self.source, u, self.point_mm, self.distribution, dof, self.value, self.unit)
 
 
 def row_tables(row: Contribution, key: str) -> dict[str, Any]:
-    """Make the table of a row, its contribution under `key`; infinitely many degrees of freedom become null."""
+    """Make the table of a contribution to a budget, its standard uncertainty in mm under `key`."""
     return {
         "source": kept(row.words),
         key: row.u_mm,

@@ -9,7 +9,7 @@ from typing import Any
 
 
 def toml_text(tables: Mapping[str, Any]) -> str:
-    """Write tables as the text of a TOML file: single values first, then tables, then lists of tables.
+    """Write tables as TOML text: single values first, then tables, then lists of tables.
 
     What is inside a table stands on one line each. Values are strings, numbers, truth values, days, and lists and
     mappings of these; TypeError for others.

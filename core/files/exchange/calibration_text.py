@@ -28,7 +28,7 @@ _MOST_EVENTS = 200_000
 
 
 def read_fields(path: Path) -> Mapping[str, Any]:
-    """Read the fields of a calibration file; their values are texts, numbers, lists, or tables that hold `data`.
+    """Read a calibration file in YAML or JSON as a table of fields; matrices are lists, or tables that hold `data`.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def read_fields(path: Path) -> Mapping[str, Any]:
 
 
 def numbers(value: Any) -> list[float] | None:
-    """Read the finite numbers of a field: one, a list, or the `data` of a matrix; None if it is something else."""
+    """Convert a field to a list of finite numbers: one, a list, or a matrix's `data`; None for anything else."""
     data = value.get("data") if isinstance(value, Mapping) else value
     words: list[Any] = data.split() if isinstance(data, str) else data if isinstance(data, list) else [data]
     if len(words) > _MOST_NUMBERS or not all(type(one) in (str, int, float) for one in words):
@@ -57,7 +57,7 @@ def numbers(value: Any) -> list[float] | None:
 
 
 def first_of(fields: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """Return the value of the first of `names` that is in `fields`; None if none is."""
+    """Return the value of that of `names` which comes first and is in `fields`; None if none is."""
     return next((fields[name] for name in names if name in fields), None)
 
 

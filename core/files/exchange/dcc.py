@@ -33,7 +33,7 @@ NOT_STATED = "not stated"
 
 
 def write_dcc(path: Path, content: ReportContent) -> None:
-    """Write the results as a digital calibration certificate (DCC).
+    """Write a report's results to `path` as a digital calibration certificate (DCC, XML).
 
     Raises
     ------
@@ -44,7 +44,7 @@ def write_dcc(path: Path, content: ReportContent) -> None:
 
 
 def dcc_document(content: ReportContent) -> Element:
-    """Make the root element of a DCC; InputError as `write_dcc`."""
+    """Make the root element of a digital calibration certificate; InputError if what it must state is missing."""
     laboratory, country = one_line(content.laboratory or content.template.name), content.template.country
     if not laboratory or not country:
         raise InputError(

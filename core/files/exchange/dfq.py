@@ -39,7 +39,7 @@ _VALID, _INVALID = 0, 255
 
 
 def write_dfq(path: Path, content: ReportContent) -> None:
-    """Write all characteristics with their values: in Windows' Latin letters, or UTF-8 with its mark if need be.
+    """Write all characteristics with their values as a Q-DAS file, in Windows' Latin letters, else in UTF-8.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def write_dfq(path: Path, content: ReportContent) -> None:
 
 
 def dfq_lines(content: ReportContent) -> list[str]:
-    """Make the lines of the file, without their ends."""
+    """Make the lines, without line ends, of the Q-DAS file of a report's characteristics."""
     found = content.characteristics
     part = content.part or "not named"
     lines = [f"K0100 {len(found)}", f"K1001 {_cut(content.serial or part, 30)}", f"K1002 {_cut(part, _NAME)}"]

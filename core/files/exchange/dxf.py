@@ -29,7 +29,7 @@ _COLOURS = {Outline: 5, SphereShape: 3, CylinderShape: 3, Curve: 1}
 
 
 def write_dxf(path: Path, geometry: Geometry) -> None:
-    """Write the geometry as DXF; the same geometry gives the same bytes. InputError if it cannot be written."""
+    """Write the measured geometry as DXF, the same one always to the same bytes; InputError if that fails."""
     kept = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True  # else the file names a clock and random numbers
     try:
@@ -49,7 +49,7 @@ def write_dxf(path: Path, geometry: Geometry) -> None:
 
 
 def layer_name(name: str) -> str:
-    """Remove from a feature's name what DXF does not permit in the name of a layer."""
+    """Make the name of a DXF layer from a feature's name, without the characters DXF does not permit."""
     return _FORBIDDEN.sub("_", name).strip() or "_"
 
 

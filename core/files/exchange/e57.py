@@ -39,7 +39,7 @@ def write_e57(
     calibration_id: str = "",
     frame: ViewFrame = CAMERA_FRAME,
 ) -> None:
-    """Write one scan as E57: x, y, z in m, intensity = σ in mm. The same cloud gives the same bytes.
+    """Write a point cloud as an E57 file of one scan: x, y, z in m, intensity = σ in mm.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ COEFFICIENTS_USED = 5
 def imported_camera(
     path: Path, image_size: tuple[int, int], matrix: ArrayLike, distortion: Sequence[float], rms_px: float = math.nan
 ) -> CameraCalibration:
-    """Make the calibration in `path`, which another program has made.
+    """Make a camera's calibration from image size, matrix and distortion that another program wrote to `path`.
 
     Raises
     ------

@@ -36,7 +36,7 @@ SKEW_NOTE = (
 
 
 def write_opencv(path: Path, calibration: CameraCalibration, at: datetime) -> None:
-    """Write a calibration for OpenCV, as JSON if `path` ends in .json, else as YAML; InputError if that fails."""
+    """Write a camera's calibration for OpenCV, as JSON if `path` ends so, else YAML; InputError if that fails."""
     camera = calibration.camera
     form = cv2.FileStorage_FORMAT_JSON if path.suffix.lower() == ".json" else cv2.FileStorage_FORMAT_YAML
     storage = cv2.FileStorage("", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY | form)
@@ -53,7 +53,7 @@ def write_opencv(path: Path, calibration: CameraCalibration, at: datetime) -> No
 
 
 def read_opencv(path: Path) -> CameraCalibration:
-    """Read a calibration that OpenCV's FileStorage holds.
+    """Read a camera's calibration from a YAML or JSON file of OpenCV's FileStorage.
 
     Raises
     ------

@@ -64,12 +64,12 @@ PART_STATUS = {"conforming": "PASS", "not conforming": "FAIL"}
 
 
 def write_qif(path: Path, content: ReportContent) -> None:
-    """Write the results as a QIF 3.0 document; InputError if it cannot be written."""
+    """Write a report's results as a QIF 3.0 document (XML); InputError if it cannot be written."""
     write_document(path, qif_document(content))
 
 
 def qif_document(content: ReportContent) -> Element:
-    """Make the root element of a QIF document."""
+    """Make the root element of the QIF 3.0 document of a report's results."""
     ids = count(1)
     component, results, device, standard = (next(ids) for _ in range(4))
     rows = [(one, [next(ids) for _ in range(4)]) for one in content.characteristics]

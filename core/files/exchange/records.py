@@ -44,7 +44,7 @@ FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "le
 
 
 def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
-    """Make the row of one fact of the result called `of`: FACT_COLUMNS, numbers in full, words in `words`' language."""
+    """Make the row, by FACT_COLUMNS, of one fact of the result called `of`, its words in the language of `words`."""
     low, high = (None, None) if fact.interval is None else map(finite, fact.interval)
     value = finite(fact.value) if isinstance(fact.value, float) else fact.value
     return {
@@ -60,7 +60,7 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
 
 
 def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fact]]:
-    """List all facts of the studies, the values in their tables included, each with the name of its result."""
+    """List all facts of a report's studies, table values included, each with its study's name."""
     return [
         (study.title(words), fact)
         for study in content.studies
@@ -69,17 +69,17 @@ def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fa
 
 
 def facts_of_steps(content: ReportContent) -> list[tuple[str, Fact]]:
-    """List all facts of what the result rests on, each with the name of its result."""
+    """List all facts of the steps that a report's result rests on, each with the name of its step."""
     return [(of, fact) for of, facts in content.facts.items() for fact in facts]
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:
-    """Choose the unit in which a characteristic is exported, and the factor to it."""
+    """Return the unit in which a characteristic is exported, and the factor from its own unit to that."""
     return ("deg", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
 
 
 def result_row(one: Characteristic) -> dict[str, Any]:
-    """Make the row of one characteristic: RESULT_COLUMNS."""
+    """Make the row, by RESULT_COLUMNS, of one characteristic."""
     unit, factor = unit_of(one)
     limits = one.limits
     return {
@@ -100,7 +100,7 @@ def result_row(one: Characteristic) -> dict[str, Any]:
 
 
 def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
-    """Make the rows of the uncertainty budget of one characteristic; `share` is of the variance, 0 to 1."""
+    """Make the rows of one characteristic's uncertainty budget; `share` is that of the variance, 0 to 1."""
     unit, factor = unit_of(one)
     variance = sum(row.u_mm**2 for row in one.budget)
     return [
@@ -122,12 +122,12 @@ def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
 
 
 def degrees_of_freedom(one: Characteristic) -> float | None:
-    """Compute the effective degrees of freedom of u; None for infinitely many, or where there is no budget."""
+    """Compute the effective degrees of freedom of a characteristic's u; None if infinitely many or without a budget."""
     return finite(effective_dof(one.budget)) if one.budget else None
 
 
 def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
-    """Make one row for every frame of the recording: FRAME_COLUMNS."""
+    """Make a row, by FRAME_COLUMNS, for each frame of the recording."""
     return [
         {name: plain(getattr(frame, name)) for name in FRAME_COLUMNS} | {"reason": str(frame.reason or "")}
         for frame in content.frames
@@ -135,7 +135,7 @@ def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
 
 
 def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
-    """List name and value of all settings and calibrations that the result rests on besides the pictures."""
+    """List name and value of what a report's result rests on: circumstances, settings, calibrations, hashes."""
     known = {
         "report": content.report_id,
         "verdict": content.results.verdict or "none",
@@ -171,7 +171,7 @@ def finite(value: float) -> float | None:
 
 
 def plain(value: Any) -> Any:
-    """Convert a value to what files hold: no NaN, no infinity."""
+    """Convert a value to what JSON can hold: NaN and infinity, also within lists and tables, become None."""
     return finite(value) if isinstance(value, float) else value
 
 
@@ -181,7 +181,7 @@ def one_line(text: str) -> str:
 
 
 def as_table(columns: Sequence[str], rows: Sequence[Row]) -> list[list[Any]]:
-    """Make a table of a head line and the rows, in the order of the columns."""
+    """Make a table of cells: a head line with the names of the `columns`, then each row in their order."""
     return [list(columns), *([row[name] for name in columns] for row in rows)]
 
 
@@ -190,7 +190,7 @@ def _said(value: float | None) -> str:
 
 
 def write_result_csv(path: Path, content: ReportContent) -> None:
-    """Write one line for each characteristic; what is not known stays empty.
+    """Write a report's characteristics as CSV, a line each; a value that is not known is an empty cell.
 
     Raises
     ------

@@ -18,13 +18,14 @@ code and values, no longer bare texts."""
 
 
 def write_result_json(path: Path, content: ReportContent) -> None:
-    """Write everything that the report says in words and numbers; InputError if it cannot be written."""
+    """Write all facts of a report as JSON; InputError if it cannot be written."""
     write_text(path, to_json(result_tables(content)))
 
 
 def result_tables(content: ReportContent) -> dict[str, Any]:
-    """Make the tables of the file. Lengths in mm, angles in degrees, temperatures in °C; null: not known, or no
-    limit.
+    """Make the tables of the JSON file of a report: lengths in mm, angles in degrees, temperatures in °C.
+
+    null: not known, or no limit.
     """
     return {
         "schema": SCHEMA,

@@ -21,7 +21,7 @@ MODELS = ("plumb_bob", "rational_polynomial")
 
 
 def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
-    """Write a calibration for ROS as camera_info.yaml.
+    """Write a camera's calibration as the YAML file camera_info of ROS.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera_info(path: Path) -> CameraCalibration:
-    """Read a calibration of ROS from camera_info.yaml.
+    """Read a camera's calibration from a YAML file camera_info of ROS.
 
     Raises
     ------

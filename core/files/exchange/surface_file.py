@@ -36,7 +36,7 @@ class OtherSurface:
 
 
 def read_surface(path: Path) -> OtherSurface:
-    """Read points or triangles of a PLY, STL, STEP or E57 file in mm; E57 in the metres its standard asks for.
+    """Read a surface from a PLY, STL, STEP (all in mm) or E57 file (in m), as points or as triangles.
 
     A PLY with faces is taken as triangles, unless its vertices have a `sigma`: then they were measured. Points may have
     normals (nx, ny, nz) and `sigma` in mm.

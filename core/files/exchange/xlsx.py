@@ -67,7 +67,7 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_xlsx(path: Path, content: ReportContent) -> None:
-    """Write result, budgets, studies, frames, facts of each step and settings, each on a sheet.
+    """Write a report as an Excel workbook, a sheet each for results, budgets, studies, frames, facts and settings.
 
     Cells hold numbers in full, and show as many decimals as the report does.
 

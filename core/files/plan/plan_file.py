@@ -42,7 +42,7 @@ _WRITE_ONE = Message(
 
 
 def read_plan(path: Path) -> InspectionPlan:
-    """Read and check plan.toml.
+    """Read and check the inspection plan in a file plan.toml.
 
     Raises
     ------
@@ -60,5 +60,5 @@ def read_plan(path: Path) -> InspectionPlan:
 
 
 def write_plan(path: Path, plan: InspectionPlan) -> None:
-    """Write plan.toml so that `read_plan` reads the same plan; InputError if it cannot be written."""
+    """Write an inspection plan as a file plan.toml for `read_plan`; InputError if it cannot be written."""
     write_text(path, toml_text(plan_tables(plan)))

@@ -45,7 +45,7 @@ from core.messages import Message
 
 
 def plan_tables(plan: InspectionPlan) -> dict[str, Any]:
-    """Make the tables of plan.toml for a plan, without default values; `PlanTables` checks them."""
+    """Make the tables of plan.toml for an inspection plan, without values that are the default."""
     tables: dict[str, Any] = {"k": float(plan.k)}
     if plan.frame is not None:
         frame = plan.frame
@@ -60,7 +60,7 @@ def plan_tables(plan: InspectionPlan) -> dict[str, Any]:
 
 
 def plan_of(tables: PlanTables, path: Path) -> InspectionPlan:
-    """Make the plan that checked `tables` describe; files they name lie beside `path`."""
+    """Make the inspection plan that checked `tables` of the file `path` describe; files it names lie beside it."""
     frame = None if tables.frame is None else PartFrame(**tables.frame.model_dump())
     temperature = None if tables.temperature is None else _temperature(tables.temperature)
     master = None if tables.master is None else master_of(tables.master, path)
@@ -242,7 +242,7 @@ def _present(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def master_of(table: MasterTable, path: Path) -> Master:
-    """Make the master that [master] of the plan at `path` describes.
+    """Make the master, a part measured better elsewhere, that the table [master] of the plan at `path` describes.
 
     Raises
     ------
@@ -286,7 +286,7 @@ def master_of(table: MasterTable, path: Path) -> Master:
 
 
 def master_table(master: Master) -> dict[str, Any]:
-    """Make the table [master] with the measurement as numbers."""
+    """Make the table [master] of plan.toml with the master's measurement as numbers."""
     return {
         "name": master.name,
         "certified_mm": master.certified_mm,

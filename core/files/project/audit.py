@@ -118,7 +118,7 @@ class Trail:
 
     @property
     def head(self) -> str:
-        """Hash of the last entry, which stands for all of them; "" where there is none."""
+        """Hash of the audit trail's last entry, which stands for all of them; "" if it has none."""
         return self.entries[-1].hash if self.entries else ""
 
 
@@ -132,7 +132,7 @@ def append(
     state: str = "",
     by: Signed | None = None,
 ) -> Entry:
-    """Add an entry to the trail of the project in `folder`, and wait until the disk holds it.
+    """Add an entry to the audit trail of the project in `folder`, return it, and wait until the disk holds it.
 
     A line that a crash left without its end is cut off first: nobody was told that it was written.
 
@@ -199,7 +199,7 @@ def read_trail(folder: Path) -> Trail:
 
 
 def trail_table(trail: Trail) -> str:
-    """Write the trail as CSV: one row a change, or one an entry without any."""
+    """Write the audit trail as CSV text: a row for each change of an entry, or one for an entry without changes."""
     table: list[tuple[object, ...]] = [
         ("n", "at", "who", "host", "by", "role", "what", "field", "old", "new", "why", "hash")
     ]

@@ -97,7 +97,7 @@ def store_camera(
     settings: Mapping[str, Any],
     inputs: Mapping[str, str] | None = None,
 ) -> str:
-    """Add a camera's calibration to the history; one that is there already becomes the newest. Returns its id.
+    """Add a camera's calibration to the project's history as the newest one, and return its id.
 
     `settings` are what it was told, as in run.json: of another program's, the file, as IMPORTED. `inputs` are the
     hashes of what it was made from: pictures, or that file.
@@ -129,7 +129,7 @@ def store_planes(
     settings: Mapping[str, Any] | None = None,
     inputs: Mapping[str, str] | None = None,
 ) -> str:
-    """Add a calibration of the light planes to the history, with the features of its poses.
+    """Add a calibration of the light planes and its poses to the project's history as the newest one; returns its id.
 
     Returns its id; one that is there already becomes the newest.
 
@@ -156,7 +156,7 @@ def store_planes(
 
 
 def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
-    """List every calibration that was stored and is still there, the newest first.
+    """List the stored calibrations of a project, of camera and light planes, the newest first.
 
     Raises
     ------
@@ -174,13 +174,13 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
 
 
 def read_stored(project_folder: Path, kind: Kind, id_: str) -> StoredCalibration | None:
-    """Read the summary of one calibration of the history; None if there is none, InputError if it is damaged."""
+    """Read the summary of a stored calibration by kind and id; None if there is none, InputError if it is damaged."""
     path = _path(project_folder / FOLDER, kind, id_).with_suffix(_KEPT)
     return _read_about(path) if path.exists() else None
 
 
 def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
-    """Read a camera's calibration from the history; InputError if it is not there, or damaged."""
+    """Read a stored calibration of the camera by its id; InputError if it is not there, or damaged."""
     path = _found(project_folder, "camera", id_)
     calibration = read_camera(path)
     _check_id(path, camera_id(calibration.camera), id_)
@@ -188,7 +188,7 @@ def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
 
 
 def read_stored_planes(project_folder: Path, id_: str, camera: Camera) -> FanCalibration:
-    """Read light planes from the history; InputError if they are not there, damaged, or rest on another camera."""
+    """Read stored light planes by their id; InputError if missing, damaged, or calibrated with another camera."""
     path = _found(project_folder, "planes", id_)
     calibration = read_planes(path, camera)
     _check_id(path, planes_id(calibration.fan), id_)
@@ -201,7 +201,7 @@ def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...
 
 
 def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> None:
-    """Copy the accepted calibrations to camera.json, planes.json and planes.npz among the results.
+    """Copy the `accepted` calibrations from the project's history into the folder of `results`, for the steps to read.
 
     A file that says the same already is left alone.
 

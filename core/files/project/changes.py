@@ -26,7 +26,7 @@ class Change:
 
 
 def differences(before: ProjectFile | None, after: ProjectFile) -> tuple[Change, ...]:
-    """List the fields of `after` that differ from `before`; all of them where there is nothing before."""
+    """List the fields in which two states of a project differ, with old and new value; None before: all fields."""
     old, new = ({} if file is None else dict(_fields(_decided(file))) for file in (before, after))
     names = dict.fromkeys((*old, *new))
     return tuple(Change(name, old.get(name, ""), new.get(name, "")) for name in names if old.get(name) != new.get(name))

@@ -88,7 +88,7 @@ class Repeat:
 
     @property
     def values(self) -> dict[str, Any]:
-        """Values by their names in files; without doubts as in files of earlier versions."""
+        """Values of the repeated measurement by their names in files; no entry of doubts if there are none."""
         values = asdict(self)
         return values if self.doubts else {name: value for name, value in values.items() if name != "doubts"}
 
@@ -157,7 +157,7 @@ class Project:
     callouts: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def printed_in(self, language: str) -> Project:
-        """Set the language of the report, unless the project states one."""
+        """Set the language of the project's report to `language`, unless the project states one."""
         return replace(self, report=replace(self.report, language=self.report.language or language))
 
 
@@ -188,5 +188,5 @@ class ProjectFile:
 
 
 def new_project(name: str) -> Project:
-    """Make a project with nothing measured, for the rig of the paper."""
+    """Make a project called `name`, with nothing measured, for the rig of the published paper."""
     return Project(ProjectInfo(name=name))

@@ -58,7 +58,7 @@ _OPENER_SAYS = "This file opens the project in its folder with Trisect; the proj
 
 
 def is_project(path: Path) -> bool:
-    """Whether `path` is the folder of a project, or the project.json in it."""
+    """Whether `path` is the folder of a project, or the file project.json in one."""
     try:
         return (path / PROJECT).is_file() or (path.name == PROJECT and path.is_file())
     except OSError:  # a place that cannot even be looked at
@@ -85,7 +85,7 @@ def read_project(path: Path) -> ProjectFile:
 
 
 def create_project(folder: Path, file: ProjectFile) -> None:
-    """Write a project into `folder`, which is made if it is not there; else as :func:`write_project`."""
+    """Write a project into `folder`, which is made if it is missing; InputError if it cannot be written."""
     make_folder(folder)
     _write(folder, file, keep_s=0.0)
 
@@ -93,7 +93,7 @@ def create_project(folder: Path, file: ProjectFile) -> None:
 def write_project(
     folder: Path, file: ProjectFile, *, keep_s: float = 0.0, why: str = "", by: Signed | None = None
 ) -> None:
-    """Write project.json, whole or not at all; its earlier content goes to backups. Left alone if it says the same.
+    """Write project.json, whole or not at all, unless it says the same already; the earlier content goes to backups.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def write_project(
 
 
 def require_project_folder(folder: Path) -> None:
-    """Raise InputError if nothing of a project is in `folder`: no later step may make an empty one there."""
+    """Raise InputError if `folder` has nothing of a project in it, so that no empty project is made there."""
     if not any((folder / name).exists() for name in (PROJECT, AUTOSAVE, BACKUPS)):
         raise vanished(folder)
 
@@ -146,7 +146,7 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
 
 
 def require_free(to: Path) -> None:
-    """Raise InputError if there is something already where the folder of a project is to be made."""
+    """Raise InputError if there is something at `to` already, where the folder of a project is to be made."""
     if to.exists():
         raise InputError(
             Message("project.folder_taken", "is there already"),
@@ -161,7 +161,7 @@ def free_folder(base: Path, name: str, fits: Callable[[Path], bool] = lambda pat
 
 
 def put_opener(folder: Path) -> None:
-    """Write NAME.trisect into a project's folder, if none is there; skipped in a folder that cannot be written to."""
+    """Write the file NAME.trisect, which opens the project, into its folder, unless there is one or it cannot be."""
     with suppress(InputError, OSError):
         if next(folder.glob(f"*{OPENER}"), None) is None:
             write_text(folder / f"{resolved(folder).name}{OPENER}", _OPENER_SAYS, sync=False)
@@ -174,7 +174,7 @@ def backups(folder: Path) -> tuple[Path, ...]:
 
 
 def write_autosave(folder: Path, file: ProjectFile) -> None:
-    """Write the state beside project.json, whole or not at all; InputError as :func:`write_project`."""
+    """Write a project's state beside project.json, whole or not at all; InputError if that fails."""
     require_project_folder(folder)
     path = folder / AUTOSAVE
     text = project_text(replace(file, saved=datetime.now().astimezone()), path)
@@ -187,7 +187,7 @@ def remove_autosave(folder: Path) -> None:
 
 
 def recoverable(folder: Path) -> ProjectFile | None:
-    """Read the autosaved state, if it differs from project.json and is not older; else None.
+    """Read the autosaved state of a project; None unless it differs from project.json and is not older.
 
     A state that cannot be read counts as none: there is nothing to recover from it. Where project.json itself cannot be
     read, the autosaved state is all there is.
@@ -210,10 +210,7 @@ class Version:
 
 
 def rescues(folder: Path) -> tuple[Version, ...]:
-    """List the states beside project.json: the autosaved one, and the newest good one in backups.
-
-    The newer one comes first; what cannot be read either is left out.
-    """
+    """List the states to rescue a project from: autosaved one and newest readable backup, the newer first."""
     autosaved = _readable(folder / AUTOSAVE)
     found = [] if autosaved is None else [Version(folder / AUTOSAVE, autosaved, autosaved=True)]
     saved = ((path, file) for path in backups(folder) if (file := _readable(path)) is not None)
@@ -223,51 +220,48 @@ def rescues(folder: Path) -> tuple[Version, ...]:
 
 
 def can_be_saved(folder: Path) -> bool:
-    """Whether the project in `folder` can be written to, as far as can be known without writing."""
+    """Whether the folder of the project can be written to, by its permissions; nothing is written to find out."""
     return os.access(folder, os.W_OK | os.X_OK)
 
 
 def stored_source(project_folder: Path, pictures: Path) -> str:
-    """Make the path that project.json states for a folder of pictures.
-
-    Relative inside the project's folder, else full.
-    """
+    """Make the path by which project.json states a folder of pictures: relative if within the project, else full."""
     full = resolved(pictures)
     own = resolved(project_folder)
     return full.relative_to(own).as_posix() if full.is_relative_to(own) else full.as_posix()
 
 
 def with_own_sources_relative(project_folder: Path, file: ProjectFile) -> ProjectFile:
-    """Make the paths of folders of pictures within the project's own folder relative to it."""
+    """Make those paths of picture folders in a project relative that lie within the project's folder."""
     named = (stored for stored in asdict(file.project.sources).values() if stored and Path(stored).is_absolute())
     moved = {stored: stored_source(project_folder, Path(stored)) for stored in named}
     return relocated(file, {full: name for full, name in moved.items() if not Path(name).is_absolute()})
 
 
 def source_folder(project_folder: Path, stored: str) -> Path | None:
-    """Resolve the folder of pictures that a project states; None where it states none."""
+    """Return the full path of the folder of pictures that project.json states as `stored`; None for ""."""
     return project_folder / stored if stored else None
 
 
 def results_folder(project_folder: Path) -> Path:
-    """Return the path of the folder of results of a project."""
+    """Return the path of the folder in a project that holds its results, there or not."""
     return project_folder / RESULTS
 
 
 def study_path(project_folder: Path, id_: str) -> Path:
-    """Where the project keeps the study called `id_`."""
+    """Return the path of the file of the study `id_` in a project, there or not."""
     return project_folder / STUDIES / id_ / STUDY
 
 
 def results_in(path: Path) -> Path:
-    """Return the folder of results of a project (its folder, or the project.json in it); any other path as it is."""
+    """Return the folder of results of the project at `path`; `path` itself if it is no project."""
     if is_project(path) and not path.is_dir():
         path = path.parent
     return results_folder(path) if is_project(path) or results_folder(path).is_dir() else path
 
 
 def sources_of_set(folder: Path) -> Sources:
-    """List the folders of pictures in a recording set, in full; "" for a part that is not there."""
+    """Return the full paths of the folders of pictures in a recording set, by part; "" for a part that is not there."""
     folders = {part: resolved(folder) / part for part in (*PARTS, CHECK)}
     return Sources(**{part: path.as_posix() if path.is_dir() else "" for part, path in folders.items()})
 

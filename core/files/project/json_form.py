@@ -145,7 +145,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
 
 
 def project_tables(file: ProjectFile) -> dict[str, Any]:
-    """Make the tables of project.json, not yet checked."""
+    """Make the tables of project.json for a project, values not checked."""
     project = file.project
     return {
         "schema_version": SCHEMA,
@@ -169,7 +169,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
 
 
 def read_project_text(path: Path) -> ProjectFile:
-    """Read what :func:`project_text` wrote to `path`.
+    """Read and check the project in a file that holds the text of `project_text`.
 
     Raises
     ------

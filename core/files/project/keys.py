@@ -29,7 +29,7 @@ Keys = Mapping[str, str]
 
 
 def inputs_of(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
-    """Compute the key of every input that the result of `step` would have now, by its name.
+    """Compute the key (hash or id) of every input, by its name, that the result of `step` would rest on if made now.
 
     Which results these are, the graph of steps says; the rest are the step's own pictures and settings. `results` are
     the finished ones: what is inspected and reported is the scan that was measured, however the project has changed
@@ -53,13 +53,13 @@ def _made_of(step: str) -> tuple[str, ...]:
 
 
 def changed(before: Keys, now: Keys) -> tuple[str, ...]:
-    """List names of the inputs that differ, in the order of `now`. One that is not there has no key."""
+    """List the names of inputs whose keys differ between `before` and `now`; a missing input counts as key ""."""
     names = dict.fromkeys((*now, *before))
     return tuple(name for name in names if before.get(name, "") != now.get(name, ""))
 
 
 def up_to_date(step: str, project: Project, results: Mapping[str, Done]) -> bool:
-    """Whether `step` has a result, and nothing that it rests on has changed since."""
+    """Whether `step` has a result, and all inputs it rests on are still the same."""
     done = results.get(step)
     return done is not None and not changed(done.rests_on, inputs_of(step, project, results))
 
@@ -84,13 +84,13 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
 
 
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
-    """Make the record of `step` just finished with `project` as it is; `at` is now if not given."""
+    """Make the record that `step` was just finished with `project` as it is, at the time `at` (None: now)."""
     keys = inputs_of(step, project, results)
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
 def with_outdated(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
-    """Mark as out of date all `results` that rest on a result of `step` made anew under the same name."""
+    """Mark as out of date all `results` that rest on the result of `step`, which was made anew under the same id."""
     anew, results = {_MADE[step]}, dict(results)
     for name in STEPS:
         done = results.get(name)
@@ -123,7 +123,7 @@ ACCEPTED: Mapping[str, str] = {
 
 
 def relocated(file: ProjectFile, moved: Mapping[str, str]) -> ProjectFile:
-    """Replace paths of pictures, nominal surfaces and template in a project by those they were `moved` to.
+    """Replace the paths in a project by those they were `moved` to: pictures, nominal surfaces, report template.
 
     Results stay as up to date as they are: the keys of those that rest on a name change with it, and so do those of
     what rests on these.

@@ -80,7 +80,7 @@ class ProjectLock:
         self._seen: Stamp | None = None
 
     def check(self) -> None:
-        """Raise InputError if this program no longer has the lock: another has taken it over, or the folder is gone."""
+        """Raise InputError if this program has lost the project's lock: to another program, or with the folder."""
         stamp = _stamp(self.folder / LOCK)
         if stamp is not None and stamp == self._seen:
             return  # a window asks many times a second: the file that was read is not read again
@@ -102,7 +102,7 @@ class ProjectLock:
         self._seen = stamp
 
     def release(self) -> None:
-        """Release the lock."""
+        """Release the project's lock, so that others can open it."""
         holder = read_holder(self.folder)
         if holder is not None and holder.key == self.holder.key:
             with contextlib.suppress(OSError):
@@ -113,7 +113,7 @@ class ProjectLock:
 
 
 def user_name() -> str:
-    """Return the name the user is logged in by; "?" where there is none."""
+    """Return the name under which the user is logged in to the computer; "?" if it is not known."""
     try:
         return getpass.getuser()
     except (KeyError, OSError):  # a number without a name, as in some containers
@@ -121,7 +121,7 @@ def user_name() -> str:
 
 
 def read_holder(folder: Path) -> LockOwner | None:
-    """Read the owner that a lock file names; None if there is none, or none that can be read."""
+    """Read which program the project's lock file names, running or not; None without a readable lock file."""
     try:
         return checked_json(LockOwner, read_json(folder / LOCK), folder / LOCK)
     except InputError:
@@ -142,7 +142,7 @@ def _stamp(path: Path) -> Stamp | None:
 
 
 def lock_owner(folder: Path) -> LockOwner | None:
-    """Read the owner of the lock; None if the project is not open, as far as can be known."""
+    """Read which program has the project open; None if none has, as far as can be known."""
     holder = read_holder(folder)
     if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK, holder)):
         return None
@@ -150,7 +150,7 @@ def lock_owner(folder: Path) -> LockOwner | None:
 
 
 def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
-    """Lock a project for this program; with `take_over` also if another program has it open.
+    """Lock a project for this program, or, with `take_over`, even if another program has it open.
 
     Raises
     ------

@@ -29,7 +29,7 @@ KEPT = ("camera", "planes")
 def next_part(
     folder: Path, to: Path, serial: str, operator: str, by: Person | None = None, progress: Progress = silent
 ) -> Path:
-    """Make the project of the next part in `to` from the one in `folder`, and return `to`.
+    """Make the project `to` for the next part of the series in the project `folder`, and return its path.
 
     Taken over: rig, settings, accepted calibrations and their history, the pictures of calibration and check where they
     lie, features with their limits, the report's choices and template, the people and their roles. Left behind: the
@@ -112,7 +112,7 @@ def _copied(folder: Path, project: Project) -> Iterator[Path]:
 
 
 def drawn_in_picture(project: Project) -> bool:
-    """Whether faces or sections are drawn in the picture, so that they hold only for a part in the same place."""
+    """Whether the project has faces or sections in px of the picture, which hold only for a part in the same place."""
     gauge, features = project.rig.gauge, project.inspection.features
     polygons = gauge is not None and (gauge.upper_polygon_px is not None or gauge.lower_polygon_px is not None)
     regions = [region for feature in features for region in feature.regions]

@@ -143,7 +143,7 @@ def _pack(files: Mapping[str, Path], to: Path, progress: Progress) -> Packed:
 
 
 def unpack_project(path: Path, to: Path, progress: Progress = silent) -> Path:
-    """Unpack a project into the folder `to`, whole or not at all, and return it.
+    """Unpack the packed project `path` into the new folder `to`, whole or not at all, and return that folder.
 
     Raises
     ------

@@ -67,13 +67,13 @@ class Rules:
 
 
 def read_rules(folder: Path) -> Rules:
-    """Read the rules of a project; InputError if their file is damaged."""
+    """Read the people and rules of a project; InputError if their file is damaged."""
     path = folder / PEOPLE
     return checked_json(Rules, read_json(path), path) if path.exists() else Rules()
 
 
 def person(name: str, role: Role, pin: str) -> Person:
-    """Make a person with a PIN; InputError if that is too short."""
+    """Make a person of the project with name, role and PIN; InputError if the PIN is too short."""
     if len(pin) < SHORTEST_PIN:
         raise InputError(
             Message("people.pin_short", "the PIN has fewer than {n} characters", n=SHORTEST_PIN), where=name
@@ -83,7 +83,7 @@ def person(name: str, role: Role, pin: str) -> Person:
 
 
 def with_pin(rules: Rules, name: str, pin: str) -> Person:
-    """Find the person of this name and check the PIN; InputError if there is none, or the PIN is another."""
+    """Return the person of this name; InputError if there is none, or `pin` is not theirs."""
     found = next((one for one in rules.people if one.name == name), None)
     if found is None or not hmac.compare_digest(_hash(pin, bytes.fromhex(found.salt)), found.hash):
         raise InputError(Message("people.wrong_pin", "name and PIN do not belong together"), where=name)
@@ -91,7 +91,7 @@ def with_pin(rules: Rules, name: str, pin: str) -> Person:
 
 
 def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
-    """Write rules, after the change of them is in the audit trail.
+    """Write a project's people and rules, after their change is in the audit trail.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
 
 
 def reset_rules(folder: Path, why: str) -> None:
-    """Remove all people and rules, without a PIN, for lost PINs; the reason stays in the trail.
+    """Remove all people and rules of a project without a PIN; the reason `why` goes into the audit trail.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def reset_rules(folder: Path, why: str) -> None:
 
 
 def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
-    """Sign the project as it is, by name and PIN: adds an entry with the meaning to the audit trail.
+    """Sign the project as it is, by name and PIN; adds an entry with `meaning` to its audit trail and returns it.
 
     Raises
     ------
@@ -146,8 +146,9 @@ def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
 
 
 def refused(rules: Rules, by: Person | None, before: Project, after: Project) -> InputError | None:
-    """Return the error why a person may not change a project in this way; None if allowed. Who has not signed in is
-    an operator.
+    """Make the error that a person's role does not permit a change of the project; None if it does.
+
+    Who has not signed in (`by` is None) is an operator.
     """
     role: Role = "operator" if by is None else by.role
     needed = needed_role(before, after)
@@ -160,7 +161,7 @@ def refused(rules: Rules, by: Person | None, before: Project, after: Project) ->
 
 
 def needed_role(before: Project, after: Project) -> Role:
-    """Return the role needed for this change.
+    """Return the lowest role that permits the change of a project from `before` to `after`.
 
     Operators set what is measured of which pictures, administrators limits.
     """
@@ -171,12 +172,12 @@ def needed_role(before: Project, after: Project) -> Role:
 
 
 def limits_changed(before: Project, after: Project) -> bool:
-    """Whether a nominal value, a limit or a tolerance differs."""
+    """Whether a nominal value, a limit or a tolerance differs between two states of a project."""
     return _limits(before) != _limits(after)
 
 
 def needs_reason(rules: Rules, results: Mapping[str, Done], before: Project, after: Project) -> bool:
-    """Whether a change needs a reason: limits are changed after something was judged by them."""
+    """Whether the rules ask for a reason for this change: limits change by which something was judged already."""
     return rules.reasons and any(step in results for step in _JUDGED) and limits_changed(before, after)
 
 

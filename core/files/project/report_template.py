@@ -66,7 +66,7 @@ class _Template(Table):
 
 
 def read_report_template(path: Path) -> ReportTemplate:
-    """Read a template and its logo.
+    """Read and check a report template (TOML) and its logo.
 
     Raises
     ------
@@ -90,16 +90,13 @@ def read_report_template(path: Path) -> ReportTemplate:
 
 
 def logo_beside(path: Path) -> Path | None:
-    """Find the logo of the template in `path`.
-
-    None if it has none, or one that lies elsewhere than beside or below it.
-    """
+    """Find the logo of the report template in `path`, beside or below it; None if it has none there."""
     logo = resolved(path.parent / checked(_Template, read_toml(path), path).logo)
     return logo if logo.is_file() and logo.is_relative_to(resolved(path.parent)) else None
 
 
 def section_set(names: list[str], *, where: str) -> frozenset[str]:
-    """Check names of sections to be left out; InputError if there is no such section."""
+    """Return the `names` of a report's sections as a set; InputError, naming `where`, if there is no such section."""
     for name in names:
         if name not in SECTIONS:
             raise InputError(

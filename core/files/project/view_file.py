@@ -36,7 +36,7 @@ class _ViewFile(ResultFile):
 
 
 def view_text(view: SeenFrom, recording: str) -> str:
-    """Write a view of the surface measured from a recording as the text of its file."""
+    """Write a view of the surface measured from `recording` as the JSON text of its file."""
     return to_json(
         {
             "recording": recording,
@@ -50,7 +50,7 @@ def view_text(view: SeenFrom, recording: str) -> str:
 
 
 def write_view(folder: Path, view: SeenFrom, recording: str) -> None:
-    """Write the view into the folder of a project; InputError if it cannot be written.
+    """Write the view of the surface to its file in a project's folder; InputError if it cannot be written.
 
     `recording` is that of the scan that is seen, as the project names it.
     """
@@ -58,19 +58,19 @@ def write_view(folder: Path, view: SeenFrom, recording: str) -> None:
 
 
 def drop_view(folder: Path) -> None:
-    """Remove the stored view; InputError if the file cannot be removed."""
+    """Remove the file of the view from a project's folder; InputError if it cannot be removed."""
     remove(folder / NAME)
 
 
 def drop_view_of_another(folder: Path, recording: str) -> None:
-    """Remove the stored view unless it is of the scan of this recording; InputError as `drop_view`."""
+    """Remove the view from a project's folder unless it is of the scan `recording`; InputError if that fails."""
     file = _read(folder)
     if file is None or file.recording != recording:
         drop_view(folder)
 
 
 def read_view(folder: Path) -> SeenFrom | None:
-    """Read the stored view; None if there is none, or none that can be shown: a report is made without it."""
+    """Read the view of the surface stored in a project's folder; None if there is none that can be shown."""
     file = _read(folder)
     if file is None:
         return None

@@ -13,7 +13,7 @@ from core.progress import Progress, silent
 
 
 def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> Path:
-    """Add the pictures of `before` to the folder `recorded`, and return that folder.
+    """Add the pictures of the folder `before` to those just `recorded` in another one, and return the latter.
 
     Those of `before` keep their names, so that what was left out by hand stays so; new ones of the same name get the
     next free number, the two of a pair the same one. `before` is left as it is: its files are linked where the disk

@@ -33,7 +33,7 @@ class DirectWriter:
         self._buffer: NDArray[np.uint8] = np.zeros(0, np.uint8)
 
     def write(self, path: Path, *data: bytes | memoryview) -> None:
-        """Write `data`, in one piece or several, to `path`; InputError if that fails, and then nothing is left."""
+        """Write the pieces of `data` to `path` one after another; if that fails, InputError and no file left."""
         size = sum(memoryview(part).nbytes for part in data)
         if not self._can or size < WORTH_BYTES:
             write_bytes(path, *data, sync=False)

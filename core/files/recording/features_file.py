@@ -61,7 +61,7 @@ _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
 
 
 def write_views(path: Path, key: str, seen: SeenViews) -> None:
-    """Write the views, under the `key` of what they rest on; InputError if they cannot be written."""
+    """Write the views of the target, under the `key` of what they rest on; InputError if that fails."""
     arrays: dict[str, NDArray[Any]] = {
         "key": np.array(key),
         "where": np.array(seen.where),
@@ -75,7 +75,7 @@ def write_views(path: Path, key: str, seen: SeenViews) -> None:
 
 
 def read_views(path: Path, key: str) -> SeenViews | None:
-    """Read the views; None if the file is not there, or rests on something else than `key`.
+    """Read the target's views stored under `key`; None if the file is not there, or rests on something else.
 
     Raises
     ------
@@ -107,7 +107,7 @@ _PLANES_TODO = Message(
 
 
 def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> None:
-    """Write planes.npz with the id of the fan that was fitted to `poses`; InputError if it cannot be written."""
+    """Write planes.npz, what the poses' pictures show, with the id of their fan; InputError if that fails."""
     arrays: dict[str, NDArray[Any]] = {
         "fan_id": np.array(planes_id),
         "names": pack_texts([pose.name for pose in poses]),
@@ -123,7 +123,7 @@ def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> No
 
 
 def read_poses(path: Path, *planes_ids: str) -> tuple[PoseFeatures, ...]:
-    """Read planes.npz; nothing if it is not there or belongs to another fan than those of `planes_ids`.
+    """Read planes.npz, what the poses' pictures show; () if missing, or of a fan not among `planes_ids`.
 
     Raises
     ------
@@ -184,7 +184,7 @@ _NOT_KNOWN = -1.0
 
 
 def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
-    """Pack views end to end into arrays, with how many points each has; a target that was not found has none."""
+    """Pack the target's points in several views end to end into arrays; a None, for no target, has no points."""
     found = [view for view in views if view is not None]
     squares = [view.covariance.ravel() for view in found if view.covariance is not None]
     return {
@@ -198,7 +198,7 @@ def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
 
 
 def unpack_views(names: Sequence[str], arrays: Arrays) -> tuple[TargetView | None, ...]:
-    """Unpack the views of `pack_views`, under `names`; KeyError or ValueError if the arrays do not fit together."""
+    """Rebuild the views that `pack_views` packed, with these `names`; KeyError or ValueError if arrays do not fit."""
     found = arrays["view_lengths"]
     check_parts(found[found != _NO_VIEW], len(arrays["view_points"]))
     lengths = found.tolist()

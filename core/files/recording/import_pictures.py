@@ -41,12 +41,12 @@ class Imported:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """Notes, and one that there is no rig.toml if so."""
+        """Notes of the import, with one that the set has no rig.toml, if so."""
         return self.notes if self.no_rig is None else (*self.notes, self.no_rig)
 
 
 def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, progress: Progress = silent) -> Imported:
-    """Put the pictures into the set `target`, which is made if need be; each part appears whole or not at all.
+    """Put the pictures of `plan` into the recording set `target`; each part appears whole or not at all.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
 
 
 def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
-    """Raise InputError if the plan and a rig.toml cannot go into `target`; nothing is written."""
+    """Raise InputError if the pictures of the plan, or `rig` as rig.toml, have no place in the set `target`."""
     if target.exists() and not target.is_dir():
         raise InputError(Message("set.file_not_folder", "is a file, not a folder"), where=target)
     for part in plan.parts:
@@ -127,7 +127,7 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
 
 
 def earlier_imports(target: Path) -> list[Any]:
-    """Read the earlier imports that import.json of a set lists; InputError if it is not ours."""
+    """Read the entries of earlier imports in a set's import.json; [] without one, InputError if it is not ours."""
     path = target / IMPORTED
     if not path.exists():
         return []

@@ -51,7 +51,7 @@ class Where:
 
     @classmethod
     def typed(cls, text: str) -> Where:
-        """Parse a folder, or a folder and a pattern of names: ``shots`` or ``shots/laser_*.jpg``."""
+        """Parse where pictures are, as typed: a folder, or folder and pattern of names, ``shots/laser_*.jpg``."""
         path = Path(text)
         if set("*?") & set(path.name) and not path.is_dir():
             return cls(path.parent, path.name)
@@ -93,7 +93,7 @@ class ImportedPicture:
     taken_at: datetime | None = None
 
     def files(self) -> tuple[tuple[str, Path], ...]:
-        """Pairs (name within the set, where it lies) of each file, as "planes/07_off.png"."""
+        """Pairs (name within the set, source) of the picture, and of its partner with the fan off, if any."""
         on = (f"{self.part}/{self.name}{self.source.suffix}", self.source)
         return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{OFF}{self.off.suffix}", self.off))
 
@@ -109,13 +109,13 @@ class ImportPlan:
 
     @property
     def parts(self) -> dict[str, tuple[ImportedPicture, ...]]:
-        """Pictures of each part that has any."""
+        """Pictures to be imported, by the part of the set, for each part that gets any."""
         names = dict.fromkeys(one.part for one in self.pictures)
         return {part: tuple(one for one in self.pictures if one.part == part) for part in names}
 
 
 def plan_import(request: ImportRequest) -> ImportPlan:
-    """Plan which picture becomes what; reads the files' heads, and three pairs.
+    """Plan which picture gets which part and name in a recording set; reads picture sizes and three pairs.
 
     Raises
     ------
@@ -260,7 +260,7 @@ _Key: TypeAlias = tuple[tuple[int, int, str], ...]
 
 
 def natural_key(text: str) -> _Key:
-    """Make the key that sorts "view2" before "view10", with "02" the same number as "2"."""
+    """Make the sort key that puts "view2" before "view10", and takes "02" and "2" as the same number."""
     return tuple((0, int(part), "") if part.isdecimal() else (1, 0, part.lower()) for part in re.split(r"(\d+)", text))
 
 

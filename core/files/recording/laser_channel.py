@@ -57,11 +57,11 @@ class LaserChannel:
 
     @property
     def settings(self) -> dict[str, str]:
-        """Channel as run.json has it; nothing for grey."""
+        """Entry of run.json that names the channel; {} for grey."""
         return {} if self.channel is None else {"channel": self.channel}
 
     def notes(self, part: str) -> tuple[Message, ...]:
-        """Note which channel was chosen for the pictures of a part of a set; nothing where it was stated."""
+        """Note the colour channel chosen for the pictures of a part; () for grey, or where the channel was stated."""
         if self.channel is None or self.times <= 1:
             return ()
         return (
@@ -77,9 +77,9 @@ class LaserChannel:
 
 
 def laser_channel(pictures: Sequence[LitPicture], *, raw: bool = False) -> LaserChannel:
-    """Choose the channel in which the light stands out farthest from the rest, if clearly farther than in grey.
+    """Choose the colour channel in which laser light stands out best; grey unless one is clearly better than that.
 
-    Of `raw` pictures the plain one that does in any case: all others are made of pixels that nobody measured.
+    For `raw` pictures a plain channel is chosen in any case: all others are made of pixels that nobody measured.
     """
     if not pictures:
         return LaserChannel()

@@ -15,7 +15,7 @@ _HEAD = "name\n"
 
 
 def mark_frame(folder: Path, name: str) -> None:
-    """Mark the frame with this file name in a recording; InputError if that cannot be written."""
+    """Mark the frame with the file `name` in a recording's folder; InputError if that cannot be written."""
     path = folder / MARKS
     try:
         with path.open("a", encoding="utf-8", newline="\n") as file:
@@ -25,9 +25,7 @@ def mark_frame(folder: Path, name: str) -> None:
 
 
 def marked_frames(folder: Path) -> frozenset[str]:
-    """Read the file names of the marked frames of a recording; none if none was marked. InputError if it cannot be
-    read.
-    """
+    """Read the file names of the frames marked in a recording's folder; empty if none is, InputError if unreadable."""
     path = folder / MARKS
     if not path.is_file():
         return frozenset()

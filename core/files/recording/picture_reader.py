@@ -51,18 +51,18 @@ class PictureReader:
         self.channels: dict[str, LaserChannel] = dict(channels or {})
 
     def of(self, recording_set: RecordingSet) -> PictureReader:
-        """Make a reader for another selection of the same pictures, with a common record of what is read."""
+        """Make a reader for `recording_set`, a selection of the same pictures; both share hashes and channels."""
         other = PictureReader(recording_set)
         other.hashes, other.channels = self.hashes, self.channels
         return other
 
     def learn(self, hashes: Mapping[str, str], channels: Mapping[str, LaserChannel]) -> None:
-        """Add the hashes and channels of what another reader has read of the same set, perhaps in another process."""
+        """Add the picture hashes and the parts' channels that another reader of the set has found."""
         self.hashes.update(hashes)
         self.channels.update(channels)
 
     def read(self, path: Path) -> Picture:
-        """Read one picture of the set as the rig states, and take its hash.
+        """Read a picture of the set as grey levels (H, W) of its part's channel, and record its hash.
 
         Raises
         ------
@@ -75,7 +75,7 @@ class PictureReader:
         return to_grey(self.read_colours(path), self.laser_channel(part).channel)
 
     def read_colours(self, path: Path) -> Picture:
-        """Read one picture of a laser as its file has it, grey or (H, W, 3), and take its hash.
+        """Read a laser picture of the set as its file has it, grey (H, W) or colour (H, W, 3), and record its hash.
 
         Raises
         ------
@@ -90,12 +90,12 @@ class PictureReader:
         return data
 
     def read_further(self, path: Path, number: int) -> Picture | None:
-        """Read the further exposure of this number of a picture; None if there is none."""
+        """Read further exposure `number`, 2 or 3, of the picture `path`; None if there is none."""
         other = self.recording_set.further.get(path, {}).get(number)
         return None if other is None else self.read(other)
 
     def read_target(self, path: Path) -> Picture:
-        """Read one picture of the set in the channel in which a target is searched, else as `read`.
+        """Read a picture of the set as grey levels (H, W) of the channel in which its target is searched.
 
         That is the laser's, unless targets cannot be seen in it; then it is the camera's. In a raw picture all sites
         show it.
@@ -105,7 +105,7 @@ class PictureReader:
         return self._decoded_target(read_bytes(path), path, seen)
 
     def read_board(self, path: Path) -> Picture:
-        """Read a picture of targets alone, wherever it lies, as those of the camera's target."""
+        """Read a picture of targets alone, in the set or not, in the channel of the camera's target."""
         return self._decoded_target(read_bytes(path), path, self.recording_set.rig.channel_of("camera"))
 
     def _decoded_target(self, data: bytes, path: Path, channel: Channel | None) -> Picture:
@@ -115,14 +115,14 @@ class PictureReader:
         return to_grey(picture, channel)
 
     def sites(self, part: str) -> Sites:
-        """Return the sites that see the laser: all, unless pictures are raw and one colour is used."""
+        """Return the mosaic sites that see a part's laser: all, unless pictures are raw and one colour is used."""
         channel, mosaic = self.laser_channel(part).channel, self.recording_set.rig.mosaic
         if mosaic is None or channel is None or is_difference(channel):
             return ALL_SITES
         return sites_of(mosaic, channel)
 
     def laser_channel(self, part: str) -> LaserChannel:
-        """Return the channel in which the pictures of a part are read, and choose it at first.
+        """Return the channel in which the pictures of a part are read: the rig's, else chosen at the first call.
 
         Where none is stated, it is the one that shows the laser best; the camera's target is looked at in grey then.
         """
@@ -134,25 +134,25 @@ class PictureReader:
         return self.channels[part]
 
     def take_hashes(self, paths: Sequence[Path], progress: Progress = silent) -> None:
-        """Take the hashes of pictures, as reading them does; one that cannot be read has none."""
+        """Compute and record the hashes of those pictures not read yet; one that cannot be read gets none."""
         for path in steps(paths, progress, "comparing the pictures", len(paths)):
             with suppress(InputError):  # told where it is looked at
                 self.hashes[self.recording_set.name_of(path)] = file_hash(path)
 
     def named_hashes(self, paths: Iterable[Path]) -> list[tuple[str, str]]:
-        """List name and hash of pictures; "" for those of which none was taken."""
+        """List name within the set and recorded hash of pictures; "" where none was recorded."""
         names = map(self.recording_set.name_of, paths)
         return [(name, self.hashes.get(name, "")) for name in names]
 
     def id_of(self, paths: Iterable[Path]) -> str:
-        """Compute twelve hex digits that identify pictures by their content; those not read yet are hashed, too."""
+        """Compute twelve hex digits that identify these pictures by content; computes missing hashes first."""
         named = {self.recording_set.name_of(path): path for path in paths}
         self.take_hashes([path for name, path in named.items() if name not in self.hashes])
         text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def stream(self, paths: Iterable[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Reason]]:
-        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, the reason.
+        """Yield name and picture of each of `paths`, or the reason why it is damaged, a few being read ahead.
 
         For one that is an earlier one again, `Exclusion.REPEATED`. `times` learns what decoding costs.
 

@@ -67,7 +67,7 @@ class Recorder:
 
     @property
     def written(self) -> int:
-        """Number of pictures on the disk."""
+        """Number of pictures that are written to the disk."""
         with self._changed:
             return self._written
 
@@ -84,7 +84,7 @@ class Recorder:
             return len(self._queue)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
-        """Queue a picture to be written as `name`, its ending added if missing; it must not be changed any more.
+        """Queue a picture to be written as `name`; False if it is dropped. The array must not be changed any more.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Recorder:
                 self._tell()
 
     def close(self) -> None:
-        """Write what is waiting and end; pictures that cannot be written even now are counted as dropped.
+        """Write all waiting pictures and close the recorder; what still cannot be written counts as dropped.
 
         Raises
         ------

@@ -47,7 +47,7 @@ class LoggedFrame:
 
 
 def logged(name: str, frame: Frame, dropped: int, camera: str) -> LoggedFrame:
-    """Make the line of a frame that a `camera` has just taken; "": a replay, whose camera is not known."""
+    """Make the log's entry of a frame just taken by `camera`; "" of a replay, whose camera is not known."""
     return LoggedFrame(name, frame.index, frame.time_s, dropped, datetime.now(UTC) if camera else None, camera)
 
 
@@ -59,7 +59,7 @@ class RecordingLog:
         self._file: int | None = None
 
     def add(self, frame: LoggedFrame) -> None:
-        """Append a frame whose file is complete; InputError if that fails, and then nothing half written stays."""
+        """Append the entry of a frame whose file is complete; InputError, and nothing half-written, if it fails."""
         begin = 0
         try:
             if self._file is None:
@@ -78,14 +78,14 @@ class RecordingLog:
             raise cannot_write(self._path, error) from error
 
     def close(self) -> None:
-        """Close the log."""
+        """Close the file of the recording's log."""
         if self._file is not None:
             os.close(self._file)
             self._file = None
 
 
 def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
-    """Read the frames of the recording in `folder`, in order; () if it has no log.
+    """Read the log of the recording in `folder`: the entries of its frames in order; () if it has none.
 
     Raises
     ------
@@ -127,7 +127,7 @@ class FolderLog:
 
     @classmethod
     def of(cls, folder: Path | None) -> FolderLog:
-        """Read the log in a folder; an empty one where there is none."""
+        """Read the log of the recording in `folder`; empty where there is no log, or `folder` is None."""
         try:
             return cls() if folder is None else cls(read_log(folder))
         except InputError as error:
@@ -135,11 +135,11 @@ class FolderLog:
 
     @property
     def lost(self) -> int:
-        """Number of frames lost while the log was written."""
+        """Number of frames lost between the first and the last of the log."""
         return lost_frames(self.frames)
 
     def acquisition(self, pictures: Sequence[Path]) -> Acquisition | None:
-        """Find the camera and the times of these pictures; None where it is not known of each."""
+        """Find the camera, first and last time of these pictures; None if the log does not tell them of each."""
         known = {frame.name: frame for frame in self.frames}
         frames = [known.get(path.name) for path in pictures]
         cameras = {"" if frame is None else frame.camera for frame in frames}
@@ -150,5 +150,5 @@ class FolderLog:
 
 
 def lost_frames(frames: Sequence[LoggedFrame]) -> int:
-    """Count the frames lost between the first and the last of a recording; a source opened anew counts anew."""
+    """Count the frames that a log shows as lost between its first and its last; a reopened source counts from 0."""
     return sum(max(0, later.dropped - earlier.dropped) for earlier, later in pairwise(frames))

@@ -79,14 +79,14 @@ class RecordingSet:
     rig_hash: str = ""
 
     def name_of(self, path: Path) -> str:
-        """Return the name of a picture within the set, as "camera/view00.png", wherever it lies."""
+        """Return a picture's name within the set, as "camera/view00.png", wherever its file lies."""
         for part, folder in self.folders.items():
             if path.parent == folder:
                 return f"{part}/{path.name}"
         raise ValueError(f"{path} is no picture of {self.name}")
 
     def path_of(self, name: str) -> Path:
-        """Return the path of the picture of this name.
+        """Return the path of the picture with this name within the set, as "camera/view00.png".
 
         Raises
         ------
@@ -99,37 +99,37 @@ class RecordingSet:
         return self.folders[part] / file
 
     def with_further(self, paths: Iterable[Path]) -> list[Path]:
-        """List some pictures, each followed by its further exposures."""
+        """List these pictures, each followed by its further exposures, if it has any."""
         return [one for path in paths for one in (path, *self.further.get(path, {}).values())]
 
     def pictures_of(self, pairs: Iterable[PlanePair]) -> list[Path]:
-        """List all pictures of some poses: the fan on and off, and their further exposures."""
+        """List all pictures of these poses: with the fan on, off, and their further exposures."""
         return self.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
     def where(self, part: str) -> Path | str:
-        """Return the folder of a part, or its name if it has none: the beginning of a complaint about it."""
+        """Return the folder of a part of the set, or the part's name if it has none, to name it in messages."""
         return self.folders.get(part, part)
 
     def not_read(self, part: str) -> tuple[Message, ...]:
-        """Note pictures and films in the folder of a part that are of a kind that is not read."""
+        """Note files in the folder of a part that are pictures or films of a kind that cannot be read; () if none."""
         return notes_on_not_read(self.folders.get(part))
 
     def log(self, part: str) -> FolderLog:
-        """Read the log of a part's recording; an empty one where there is none."""
+        """Read the log of the recording of a part; empty where there is none."""
         return FolderLog.of(self.folders.get(part))
 
     @property
     def rig_file(self) -> Path:
-        """Path of rig.toml, whether it is there or not."""
+        """Path of the set's rig.toml, whether it is there or not."""
         return next((folder.parent for folder in self.folders.values()), Path(self.name)) / RIG
 
     def contains(self, folder: Path) -> bool:
-        """Whether a part of the set is in `folder`, so that nothing else should be written there."""
+        """Whether `folder` is one of the set's folders of pictures, or the folder around one."""
         own = {resolved(path) for place in self.folders.values() for path in (place, place.parent)}
         return resolved(folder) in own
 
     def with_channel(self, channel: Channel | None) -> RecordingSet:
-        """Set this channel for the laser in all parts; None changes nothing."""
+        """Set the channel in which laser pictures of all parts are read; None leaves what the rig states."""
         if channel is None:
             return self
         rig = self.rig
@@ -138,12 +138,12 @@ class RecordingSet:
         return replace(self, rig=rig)
 
     def part_of(self, path: Path) -> str:
-        """Return the part that a picture belongs to, as "camera"."""
+        """Return the name of the part, as "camera", to which the picture `path` belongs."""
         return self.name_of(path).partition("/")[0]
 
 
 def require_folder(folder: Path) -> None:
-    """Raise InputError unless the folder of a recording set is there."""
+    """Raise InputError unless `folder` is there and is a folder."""
     if folder.is_dir():
         return
     what = (
@@ -157,7 +157,7 @@ def require_folder(folder: Path) -> None:
 
 
 def open_set(folder: Path) -> RecordingSet:
-    """List and check a recording set without decoding its pictures.
+    """List the pictures of the recording set in `folder` by part, and check names and sizes without decoding them.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def gather_set(
     name: str = "",
     check: Path | None = None,
 ) -> RecordingSet:
-    """Make one set from folders of pictures anywhere; one that is not there leaves its part empty.
+    """Make a recording set from folders of pictures that lie anywhere; a part whose folder is None is empty.
 
     Names and hashes are those of a set in one folder. The rig's hash is that of the rig.toml beside one of the folders
     if it says the same, else of the rig.toml that could be written. Without a `name`, the set is called like the folder
@@ -230,7 +230,7 @@ def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Mes
 
 
 def require_camera(recording_set: RecordingSet) -> None:
-    """Raise InputError unless the set has views of the camera target, and explain what that is."""
+    """Raise InputError unless the set has pictures of the camera's target."""
     require_tables(recording_set.rig, recording_set.rig_file, "camera_target")
     if not recording_set.camera:
         raise _nothing_in(
@@ -242,7 +242,7 @@ def require_camera(recording_set: RecordingSet) -> None:
 
 
 def require_planes(recording_set: RecordingSet) -> None:
-    """Raise InputError unless the set has pictures of the plane target with the fan on, and explain both."""
+    """Raise InputError unless the set has pictures of the plane target with the fan on."""
     require_tables(recording_set.rig, recording_set.rig_file, "plane_target", "laser_fan")
     if not recording_set.planes:
         raise _nothing_in(
@@ -265,7 +265,7 @@ def require_scan(recording_set: RecordingSet) -> None:
 
 
 def require_outside(recording_set: RecordingSet, out: Path) -> None:
-    """Raise InputError if the results were to go into the set itself."""
+    """Raise InputError if the folder `out` for results is within the recording set."""
     if recording_set.contains(out):
         raise InputError(
             Message("project.results_within_set", "the results cannot go into the recording set itself"),
@@ -303,7 +303,7 @@ def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
 
 
 def excludable(recording_set: RecordingSet) -> tuple[str, ...]:
-    """List all that can be left out of a set: views and frames as files, poses (on and off together) by their name."""
+    """List the names of all that can be left out of a set: views, frames, and poses (fan on and off together)."""
     views = (recording_set.name_of(path) for path in recording_set.camera)
     frames = (recording_set.name_of(path) for path in recording_set.frames)
     return (*views, *(f"planes/{pair.name}" for pair in recording_set.planes), *frames)

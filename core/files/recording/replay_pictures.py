@@ -22,7 +22,7 @@ class ReplayPictures:
 
     @property
     def is_set(self) -> bool:
-        """Whether the folder has parts named as in a recording set."""
+        """Whether the folder holds folders named as the parts of a recording set."""
         return any((self.folder / part).is_dir() for part in _PARTS)
 
     def __call__(self, step: Step, lasers: Lasers) -> tuple[Path, ...]:

@@ -124,7 +124,7 @@ CERTIFIED = ("certificate", "laboratory", "due")
 
 
 def require_pairs(table: BaseModel, pairs: Sequence[tuple[str, str]]) -> None:
-    """Raise Clash where one of a pair of keys is there without the other."""
+    """Raise Clash if in one of the `pairs` of keys of a table one is stated and the other is not."""
     for pair in pairs:
         missing = [name for name in pair if getattr(table, name) is None]
         if len(missing) == 1:
@@ -429,7 +429,7 @@ _PART_FIELDS = {"alpha_per_K": "alpha", "u_alpha_per_K": "u_alpha"}
 
 
 def part_table(part: Part) -> dict[str, Any]:
-    """Make the table [part] of a part, without what is not stated, and under "target" what is stated of that."""
+    """Make the table [part] of rig.toml for a measured part, with what is stated alone."""
     target = temperature_table(part.target)
     return _of_part_alone(part) | ({"target": target} if target else {})
 
@@ -439,12 +439,12 @@ def _of_part_alone(part: Part) -> dict[str, Any]:
 
 
 def temperature_table(target: TargetTemperature) -> dict[str, Any]:
-    """Make the table of a target's temperature, without what is not stated."""
+    """Make the part of a target's table in rig.toml that states its temperature; without what is not stated."""
     return _renamed(asdict(target))
 
 
 def as_calibrated_with(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Drop from a target's table what no calibration rests on: its temperature and its certificate."""
+    """Remove temperature and certificate from a target's table, on which no calibration rests."""
     left_out = {*(key for pair in WARMTH for key in pair), *CERTIFIED}
     return {key: value for key, value in table.items() if key not in left_out}
 
@@ -455,7 +455,7 @@ def _renamed(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def part_of(table: Mapping[str, Any], path: Path) -> Part:
-    """Make the part that a table of `part_table` describes; InputError if it is none."""
+    """Make the measured part that a table [part] describes; InputError that names `path` if it is wrong."""
     alone = {name: value for name, value in table.items() if name != "target"}
     target = checked(_Printed, dict(table.get("target", {})), path).temperature()
     return replace(checked(_Part, alone, path).part(), target=target)
@@ -602,12 +602,12 @@ class Rig:
 
     @property
     def one_target(self) -> bool:
-        """Whether camera and planes are stated to be calibrated with the same target."""
+        """Whether the rig states the same target for calibrating camera and light planes."""
         stated = self.unstated.isdisjoint({"camera_target", "plane_target"})
         return stated and self.camera_target == self.plane_target
 
     def channel_of(self, part: str) -> Channel | None:
-        """Return the channel in which a part of a set ("camera", "planes", "scan", "check") is read, if any.
+        """Return the colour channel stated for a part ("camera", "planes", "scan", "check"); None if none is.
 
         The camera's target cannot be seen in a difference of channels that is stated for all parts.
         """
@@ -617,23 +617,23 @@ class Rig:
 
     @property
     def live_channel(self) -> Channel | None:
-        """Channel that colour pictures of live sources are reduced to: targets have to be visible in it."""
+        """Channel to which colour pictures of live cameras are reduced: one in which targets can be seen."""
         scan = self.channel_of("scan")
         return self.channel_of("camera") if is_difference(scan) else scan
 
     def with_channel(self, part: str, channel: Channel | None) -> Rig:
-        """Set the channel of the pictures of one part; None: it is chosen from them."""
+        """Set the colour channel in which pictures of `part` are read; None leaves it to be chosen from them."""
         now = {name: self.channel_of(name) for name in ("camera", "planes", "scan")}
         return replace(self, channel=None, channels=Channels(**(now | {part: channel})))  # type: ignore[arg-type]
 
 
 def default_rig() -> Rig:
-    """Make the rig of the paper: its checkerboard, its black square, three laser lines 5° apart; nothing to measure."""
+    """Make the rig of the published paper: checkerboard, black square, three laser lines 5° apart."""
     return Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), lines=3, angle=math.radians(5.0))
 
 
 def require_tables(rig: Rig, path: Path, *names: str) -> None:
-    """Raise InputError if one of the tables of these `names` is not in the rig.toml at `path`."""
+    """Raise InputError if the rig.toml at `path` lacks one of the tables `names`."""
     for name in names:
         if name in rig.unstated:
             wanted = RigTables.model_fields[name].description
@@ -644,7 +644,7 @@ def require_tables(rig: Rig, path: Path, *names: str) -> None:
 
 
 def read_rig(path: Path) -> Rig:
-    """Read and check rig.toml. A table that is not there is not missed yet: each step wants its own only.
+    """Read and check a rig.toml as a rig; tables that are not there are left out, for the steps that need them to miss.
 
     Raises
     ------
@@ -656,7 +656,7 @@ def read_rig(path: Path) -> Rig:
 
 
 def read_rig_tables(path: Path) -> RigTables:
-    """Read and check rig.toml as `read_rig` does; return its tables, those not there as None."""
+    """Read and check the tables of a rig.toml, a missing one as None; InputError if it is missing or wrong."""
     return checked(RigTables, _toml(path), path)
 
 
@@ -665,7 +665,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
-    """Make the rig that checked `tables` describe; `path`, and the field `within` it, are for complaints."""
+    """Make the rig that checked `tables` describe; messages name `path` and the field `within` it."""
     rig = default_rig()
     stated: dict[str, Any] = {}
     if tables.camera_target is not None:
@@ -722,13 +722,13 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
 
 
 def stated_part(tables: RigTables) -> Part:
-    """Make the part, and the temperature of the plane target, as stated in `tables`."""
+    """Make the measured part, with the plane target's temperature, that checked `tables` of rig.toml state."""
     part = Part() if tables.part is None else tables.part.part()
     return part if tables.plane_target is None else replace(part, target=tables.plane_target.temperature())
 
 
 def rig_tables(rig: Rig) -> dict[str, Any]:
-    """Make the tables of rig.toml for a rig, without those that are not there; `RigTables` checks them."""
+    """Make the tables of rig.toml for a rig, without those of which it states nothing; values are not checked."""
     tables = {
         "name": rig.name or None,
         "channel": rig.channel,

@@ -47,12 +47,12 @@ class PlanePair:
 
 
 def is_further(path: Path) -> bool:
-    """Whether a picture is named as another one's further exposure: NAME@2.png or NAME@3.png of NAME.png."""
+    """Whether a picture's name is that of a second or third exposure: NAME@2.png or NAME@3.png."""
     return _FURTHER.fullmatch(path.stem) is not None
 
 
 def pictures_in(folder: Path | None) -> tuple[Path, ...]:
-    """List the pictures in a folder except further exposures, in the order of their names.
+    """List the pictures in a folder by name, without further exposures; () if there is no such folder.
 
     Nothing if there is no such folder, InputError if it cannot be listed.
     """
@@ -60,7 +60,7 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
 
 
 def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[str, ...]:
-    """List names, in order, of files in a folder that fit and look like pictures or films of an unread kind."""
+    """List the names of pictures and films of an unread kind in a folder that `fits` accepts, in order."""
     if folder is None or not folder.is_dir():
         return ()
     try:
@@ -71,7 +71,7 @@ def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> t
 
 
 def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
-    """Note such files, naming the first; none where there are none."""
+    """Note pictures and films of an unread kind in a folder whose names `fits` accepts; () if none."""
     names = names_not_read(folder, fits)
     if folder is None or not names:
         return ()
@@ -79,7 +79,7 @@ def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -
 
 
 def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:
-    """Find pictures in a folder with their further exposures by number; one without a first is an error."""
+    """Find second and third exposures, by number, of pictures in a folder; InputError without a first."""
     every = _all_in(folder)
     firsts = {path.stem: path for path in every if not is_further(path)}
     found: dict[Path, dict[int, Path]] = {}
@@ -112,17 +112,17 @@ def _all_in(folder: Path | None) -> tuple[Path, ...]:
 
 
 def is_off(path: Path) -> bool:
-    """Whether a picture is named as one with the fan off: NAME_off or NAME_OFF."""
+    """Whether a picture's name says that the fan was off: NAME_off or NAME_OFF."""
     return path.stem.lower().endswith(OFF)
 
 
 def without_off(path: Path) -> str:
-    """Remove the ending, and the mark that the fan is off, from a picture's name."""
+    """Return a picture's name without its ending and without the mark "_off"."""
     return path.stem[: -len(OFF)] if is_off(path) else path.stem
 
 
 def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
-    """Pair pictures with the fan on with their partner NAME_off; an off picture without partner is an error.
+    """Pair the pictures NAME with NAME_off in a folder; InputError for an off picture without a partner.
 
     Names that differ in small letters and capitals alone are the same, unless there is one that does not.
     """
@@ -150,7 +150,7 @@ def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
 
 
 def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
-    """List the reference, if there is one, and the frames; InputError if there are several references."""
+    """List the reference picture, or None, and the frames in a scan's folder; InputError if it has two references."""
     scan = pictures_in(folder)
     references = [path for path in scan if path.stem.lower() == _REFERENCE]
     if len(references) > 1:
@@ -168,10 +168,7 @@ def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
 
 
 def taken_at(paths: Sequence[Path]) -> datetime:
-    """Return when the newest of some pictures was taken, as far as their files state it.
-
-    Now, if there are none any more.
-    """
+    """Return when the newest of these pictures was taken, as far as their files tell; now, if all are gone."""
     times = []
     for path in paths:
         with contextlib.suppress(OSError):
@@ -180,7 +177,7 @@ def taken_at(paths: Sequence[Path]) -> datetime:
 
 
 def check_sizes(paths: Sequence[Path]) -> None:
-    """Raise InputError naming the exceptions unless all pictures have one size. Reads only the files' heads."""
+    """Raise InputError, naming those that differ, unless all pictures have one size; reads their heads alone."""
     sizes = {path: size for path in paths if (size := _size(path)) is not None}
     if len(set(sizes.values())) <= 1:
         return

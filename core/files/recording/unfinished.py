@@ -27,18 +27,18 @@ class Unfinished:
 
 
 def note_recording(project: Path, step: Step, folder: Path) -> None:
-    """Note that `folder` is being recorded for `step`; InputError if nothing can be written there."""
+    """Write into the project's folder the note that `folder` is being recorded for `step`; InputError if that fails."""
     make_inner_folder(project, NOTE.parent.name)
     write_text(project / NOTE, json.dumps({"step": step, "folder": folder.name}), sync=False)
 
 
 def forget_recording(project: Path) -> None:
-    """Remove the note of a recording that is added or not wanted; InputError if it cannot be removed."""
+    """Remove the note of a recording in progress from the project's folder; InputError if it cannot be removed."""
     remove(project / NOTE)
 
 
 def unfinished_recording(project: Path) -> Unfinished | None:
-    """Find a recording that was interrupted when the program died; None if there is none, or no picture of it."""
+    """Find the recording that the project's note tells was interrupted; None without a note, or without pictures."""
     try:
         noted = read_json(project / NOTE)
         step, name = noted["step"], noted["folder"]

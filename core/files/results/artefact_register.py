@@ -60,7 +60,7 @@ class ArtefactTable(Table):
     laboratory: ShortText = ""
 
     def artefact(self) -> Artefact:
-        """Make the artefact of this table."""
+        """Make the artefact that this table describes."""
         return Artefact(**dict(self))
 
 
@@ -80,25 +80,23 @@ def read_register(beside: Path) -> Mapping[str, Artefact]:
 
 
 def own_register() -> Mapping[str, Artefact]:
-    """Read the user's own artefacts by their ids; InputError as `read_register`."""
+    """Read the user's own artefacts, by their ids; {} without a file, InputError if it is wrong."""
     return register_in(own_folder())
 
 
 def register_in(folder: Path) -> Mapping[str, Artefact]:
-    """Read the artefacts of the register in one folder, by their ids; none without one. InputError as
-    `read_register`.
-    """
+    """Read the artefacts in artefacts.toml in `folder`, by their ids; {} without a file, InputError if it is wrong."""
     path = folder / REGISTER
     return _artefacts(read_toml(path, missing=_MISSING), path) if path.exists() else {}
 
 
 def register_text(artefacts: Iterable[Artefact]) -> str:
-    """Write the text of a register of these artefacts."""
+    """Write these artefacts as the text of artefacts.toml."""
     return "\n".join(map(_text, artefacts))
 
 
 def store_own(artefact: Artefact) -> Mapping[str, Artefact]:
-    """Add an artefact to the user's own, behind the others; returns them all.
+    """Add an artefact to the user's own register, at its end; returns all of them by id.
 
     Raises
     ------
@@ -113,7 +111,7 @@ def store_own(artefact: Artefact) -> Mapping[str, Artefact]:
 
 
 def change_own(id_: str, to: Artefact | None) -> Mapping[str, Artefact]:
-    """Replace the user's own artefact of this id, or remove it for None; returns them all.
+    """Replace the artefact `id_` in the user's own register by `to`, or remove it if that is None; returns all left.
 
     Raises
     ------
@@ -180,7 +178,7 @@ def _text(artefact: Artefact) -> str:
 
 
 def artefact_named(id_: str, beside: Path) -> Artefact:
-    """Find the artefact of this id; InputError if the registers do not have it, or as `read_register`."""
+    """Find the artefact `id_` among the user's own and those in the folder `beside`; InputError if it is not there."""
     known = read_register(beside)
     if id_ not in known:
         raise InputError(

@@ -114,13 +114,13 @@ class _CameraFile(ResultFile):
 
 
 def camera_id(camera: Camera) -> str:
-    """Compute twelve hex digits that identify these parameters; files made with them carry it."""
+    """Compute twelve hex digits that identify a camera's parameters: a hash, kept by files made with them."""
     numbers = np.concatenate([camera.image_size, camera.matrix.ravel(), camera.distortion])
     return hashlib.sha256(numbers.astype("<f8").tobytes()).hexdigest()[:12]
 
 
 def write_camera(path: Path, calibration: CameraCalibration) -> None:
-    """Write camera.json; InputError if it cannot be written."""
+    """Write a camera's calibration as camera.json; InputError if it cannot be written."""
     camera = calibration.camera
     write_json(
         path,
@@ -148,7 +148,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera(path: Path) -> CameraCalibration:
-    """Read camera.json, also one of another program that holds no more than image_size, matrix and distortion.
+    """Read a camera's calibration from camera.json; image_size, matrix and distortion alone suffice.
 
     Raises
     ------
@@ -196,7 +196,7 @@ def _calibration(file: _CameraFile) -> CameraCalibration:
 
 
 def board_table(shape: BoardShape) -> dict[str, Any]:
-    """Make the table of a target's shape."""
+    """Make the table of camera.json or planes.json that holds a target's shape."""
     return {
         "parameters": SHAPE_PARAMETERS,
         "shape": shape.values,
@@ -209,7 +209,7 @@ def board_table(shape: BoardShape) -> dict[str, Any]:
 
 
 def board_shape(table: BoardTable | None) -> BoardShape:
-    """Make the shape that a file states; flat if there is none."""
+    """Make a target's shape from a file's `table`; flat if that is None."""
     if table is None:
         return BoardShape()
     board = Board(np.array(table.middle_mm), np.array(table.half_mm))

@@ -47,7 +47,7 @@ class CheckedPicture:
 
     @property
     def used(self) -> bool:
-        """Whether the picture is used."""
+        """Whether the pose takes part in the check: it has no reason against it."""
         return self.reason is None
 
 
@@ -92,35 +92,32 @@ class InterimCheck:
 
     @property
     def passed(self) -> bool:
-        """Whether the pictures agree with the calibrations."""
+        """Whether the check's verdict is passed: its stripes agree with the calibrations."""
         return self.verdict == "passed"
 
     @property
     def verdict(self) -> CheckVerdict:
-        """Verdict of the check; doubtful is what chance does to one rig in a hundred that has not changed."""
+        """Verdict on the check, by the probability `p` that chance explains it: passed, doubtful or failed."""
         return "passed" if self.p >= P_TOLD else "doubtful" if self.p >= PROVES_NOTHING else "failed"
 
     @property
     def used(self) -> int:
-        """Number of poses used."""
+        """Number of poses that take part in the check."""
         return sum(pose.used for pose in self.poses)
 
     @property
     def offset_px(self) -> float:
-        """RMS distance in pixels of the stripes from where the calibrations have them; NaN without stripes."""
+        """RMS distance in px of the check's stripes from where the calibrations expect them; NaN without stripes."""
         return _rms([line.offset_px for pose in self.poses for line in pose.lines])
 
     @property
     def offset_mm(self) -> float:
-        """RMS distance in mm on the target of the stripes from where the calibrations have them.
-
-        NaN without stripes.
-        """
+        """RMS distance in mm on the target of the check's stripes from the expected ones; NaN without any."""
         return _rms([line.offset_mm for pose in self.poses for line in pose.lines])
 
     @property
     def sentence(self) -> Message:
-        """Sentence with the result of the check, and what to do."""
+        """Sentence that tells the check's verdict and what to do."""
         values = {"offset_px": self.offset_px, "offset_mm": self.offset_mm, "p": self.p}
         if not self.used:
             return Message(
@@ -151,7 +148,7 @@ class InterimCheck:
 
 
 def write_check(path: Path, check: InterimCheck) -> None:
-    """Write check.json; InputError if it cannot be written."""
+    """Write an interim check as check.json; InputError if it cannot be written."""
     write_json(
         path,
         {
@@ -182,7 +179,7 @@ def write_check(path: Path, check: InterimCheck) -> None:
 
 
 def read_check(path: Path) -> InterimCheck:
-    """Read check.json; InputError if it is missing, no JSON, or a value is wrong."""
+    """Read an interim check from check.json; InputError if it is missing, no JSON, or a value is wrong."""
     return checked_json(InterimCheck, read_json(path, todo=_TODO), path)
 
 

@@ -31,12 +31,14 @@ _ROWS_AT_ONCE = 20_000
 
 
 def point_columns(kind: FrameKind) -> dict[str, str]:
-    """Make the columns of a cloud, with frame and unit in their names, and the formats of their values."""
+    """Map the column names of a point cloud's CSV file, in a frame of this kind, to the formats of their values."""
     return {**dict.fromkeys(PLACES[kind], "%.6f"), **_COLUMNS}
 
 
 def write_points_csv(path: Path, cloud: Cloud, frame: ViewFrame = CAMERA_FRAME, progress: Progress = silent) -> None:
-    """Write one line for each point of `cloud` in `frame`. Frame −1 is the reference, measured by the fan itself.
+    """Write a point cloud as CSV, a line for each point, coordinates in `frame`.
+
+    Frame −1 is the reference, measured by the fan itself.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class ChangedPart:
 
     @classmethod
     def of(cls, changed: Changed) -> ChangedPart:
-        """Make the entry of a changed part."""
+        """Make comparison.json's entry of a changed part of the surface."""
         return cls(changed.share, changed.mean_mm, changed.extreme_mm)
 
 
@@ -96,7 +96,7 @@ class ComparisonFile:
 
     @classmethod
     def of(cls, comparison: Comparison, other: str, alignment: Alignment, calibration_id: str) -> ComparisonFile:
-        """Make the content of comparison.json from a comparison."""
+        """Make the content of comparison.json from a comparison with the surface named `other`."""
         return cls(
             other,
             alignment,
@@ -111,7 +111,7 @@ class ComparisonFile:
         )
 
     def values(self) -> dict[str, Any]:
-        """Values as they are written, and printed for machines."""
+        """Return the values of comparison.json by name, also printed for machines."""
         numbers = {name: getattr(self, name) for name in self.__slots__ if name not in ("lower", "higher")}
         parts = {
             name: {key: getattr(part, key) for key in ("share", "mean_mm", "extreme_mm")}
@@ -121,17 +121,17 @@ class ComparisonFile:
 
 
 def write_comparison(path: Path, file: ComparisonFile) -> None:
-    """Write comparison.json; InputError if it cannot be written."""
+    """Write the summary of a comparison as comparison.json; InputError if it cannot be written."""
     write_json(path, file.values())
 
 
 def read_comparison(path: Path) -> ComparisonFile:
-    """Read comparison.json; InputError if it is missing, no JSON, or a value is wrong."""
+    """Read the summary of a comparison from comparison.json; InputError if it is missing, no JSON, or wrong."""
     return checked_json(ComparisonFile, read_json(path, todo=_TODO), path)
 
 
 def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None:
-    """Write every core point: place, normal, deviation, σ of it, level of detection, whether it is significant.
+    """Write a comparison's core points as PLY: place, normal, deviation, its σ, level of detection, significance.
 
     Raises
     ------
@@ -153,12 +153,12 @@ def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None
 
 
 def write_comparison_csv(path: Path, comparison: Comparison) -> None:
-    """Write the core points as a table, a line for each; InputError if it cannot be written."""
+    """Write a comparison's core points as CSV, a line each; InputError if it cannot be written."""
     _write_table(path, _columns(comparison), CAMERA_FRAME)
 
 
 def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Write the comparison.ply in `source` with places and normals in `frame`.
+    """Copy the comparison.ply at `source` to `path`, with places and normals transformed to `frame`.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
 
 
 def write_comparison_csv_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Write the comparison.csv in `source` with places and normals in `frame`; InputError as the one above."""
+    """Copy the comparison.csv at `source` to `path`, with places and normals transformed to `frame`."""
     try:
         head, *rows = [line.split(",") for line in read_bytes(source).decode().splitlines()]
         values = np.array(rows, dtype=np.float64).reshape(-1, len(head))

@@ -42,7 +42,7 @@ class ExportKind:
 
     @property
     def ending(self) -> str:
-        """Ending of the file's name, with its point."""
+        """Ending of the exported file's name, with its point."""
         return PurePath(self.file).suffix
 
 

@@ -11,7 +11,7 @@ from core.inspect.result_list import ResultList
 
 
 def read_results(folder: Path) -> ResultList:
-    """Read all results in a folder, as far as they are there; InputError if one of the files is damaged."""
+    """Read the thickness and the inspection in a folder, if they are there; InputError if a file is damaged."""
     gauge, inspection = folder / FILES["gauge"], folder / FILES["inspection"]
     thickness = read_thickness(gauge) if gauge.is_file() else None
     if not inspection.is_file():

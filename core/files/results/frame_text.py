@@ -31,12 +31,12 @@ _LARGEST_SHEAR = 1e-6
 
 
 def frame_words(kind: FrameKind) -> str:
-    """Name the frame for the head of a file."""
+    """Name a frame of this kind in English, for the head of a file."""
     return f"{_FRAME}{IN_WORDS[kind]}"
 
 
 def frame_comments(frame: ViewFrame) -> list[str]:
-    """Make the comments on the frame in the head of a PLY file: its name, and the motion into the camera's frame."""
+    """Make the comments of a PLY file's head that tell its frame: the name, and the motion into the camera frame."""
     words = frame_words(frame.kind)
     if frame.kind is FrameKind.CAMERA:
         return [words]
@@ -46,7 +46,7 @@ def frame_comments(frame: ViewFrame) -> list[str]:
 
 
 def pose_in_comments(comments: Sequence[str], path: Path) -> Pose:
-    """Read from a file's head the motion into the camera frame; the identity where no frame is named.
+    """Read the motion into the camera frame from a PLY file's comments; the identity where they name no frame.
 
     Raises
     ------

@@ -118,7 +118,7 @@ class _GaugeFile(ResultFile):
 
 
 def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
-    """Make the summary of a thickness, by the names used in files and on the command line."""
+    """Make the table of thickness, U, limits and verdict by the names of files and command line."""
     return {
         "thickness_mm": gauge.thickness_mm,
         "u_mm": gauge.u_mm,
@@ -135,7 +135,7 @@ def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
 
 
 def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
-    """Write gauge.json at `path`, and gauge.npz beside it; InputError if they cannot be written."""
+    """Write a thickness as gauge.json at `path`, its faces' points beside it as gauge.npz; InputError if that fails."""
     write_arrays(path.with_suffix(".npz"), {"upper": gauge.upper.indices, "lower": gauge.lower.indices})
     write_text(
         path,
@@ -160,7 +160,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
 
 
 def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
-    """Read gauge.json with the faces' points among those of `cloud`.
+    """Read a thickness from gauge.json, its faces' points taken from `cloud`.
 
     The file's `verdict` is for other programs and is not read: it follows anew from the numbers and `doubts`, so that
     no file, of an earlier version or changed by hand, says more than they prove; one that does not say that it is
@@ -176,13 +176,13 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
 
 
 def read_thickness(path: Path) -> Characteristic:
-    """Read gauge.json alone, without the points its faces rest on; InputError as `read_gauge`."""
+    """Read the thickness as a characteristic from gauge.json, without its faces' points; InputError if it is wrong."""
     none = dict.fromkeys(_MEMBERS, np.zeros(0, dtype=np.int64))
     return thickness_characteristic(_gauge(_read(path), none, np.zeros((0, 3))))
 
 
 def read_lower_face(path: Path) -> LightPlane | None:
-    """Read the plane of the lower face in gauge.json; None without the file; InputError if it is damaged."""
+    """Read the plane of the lower face in gauge.json; None without the file, InputError if it is damaged."""
     if not path.is_file():
         return None
     none = dict.fromkeys(_MEMBERS, np.zeros(0, dtype=np.int64))

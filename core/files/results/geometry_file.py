@@ -56,7 +56,7 @@ class _GeometryFile(ResultFile):
 
 
 def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry:
-    """Read the features of `inspection` as geometry, in `frame`.
+    """Read the features of `inspection`, a file inspection.json, as geometry to be drawn, in `frame`.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry
 
 
 def read_part_frame(inspection: Path) -> Pose | None:
-    """Read the pose from part to camera coordinates in inspection.json; None without it, or without any.
+    """Read the pose of the part frame in the camera frame from inspection.json; None if there is no file or no pose.
 
     Raises
     ------

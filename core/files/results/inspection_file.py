@@ -145,7 +145,7 @@ class _InspectionFile(ResultFile):
 
 
 def inspection_values(inspection: Inspection) -> dict[str, Any]:
-    """Make the values of an inspection, but its points, by the names of the file and the command line."""
+    """Make the table of an inspection's results, without points, by the names of inspection.json."""
     pose, frames = inspection.pose_camera_part, control_frames(inspection.plan)
     return {
         "schema_version": SCHEMA,
@@ -165,7 +165,7 @@ def inspection_values(inspection: Inspection) -> dict[str, Any]:
 def write_inspection(
     path: Path, inspection: Inspection, calibration_id: str = "", plan: Mapping[str, Any] | None = None
 ) -> None:
-    """Write inspection.json at `path`, and inspection.npz beside it; InputError if they cannot be written.
+    """Write an inspection to `path`, inspection.json, and inspection.npz beside it; InputError if it fails.
 
     `plan` is what was asked, by the keys of plan.toml.
     """
@@ -184,7 +184,7 @@ def write_inspection(
 
 
 def read_inspection(path: Path) -> InspectionFile:
-    """Read inspection.json, and the points from inspection.npz if it is there.
+    """Read an inspection from inspection.json, with its points if inspection.npz is beside it.
 
     Raises
     ------

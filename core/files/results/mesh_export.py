@@ -35,7 +35,7 @@ _RELATIONS = (
 
 
 def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write the mesh as Wavefront OBJ, in mm (OBJ itself has no unit), with normals; groups measured and filled.
+    """Write a mesh as Wavefront OBJ in mm, with normals; measured and filled triangles are groups.
 
     Places and directions are those of `frame`, which the head names.
 
@@ -54,7 +54,7 @@ def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
 
 
 def write_3mf(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME, name: str = "scan") -> None:
-    """Write the mesh as 3MF, unit millimetre: an object of measured and one of filled triangles.
+    """Write a mesh as 3MF in mm; measured and filled triangles are two objects.
 
     Places are those of `frame`, which the description names.
 
@@ -109,7 +109,7 @@ def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64
 
 
 def write_stl(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write the triangles of `mesh` as binary STL, in mm, in `frame`, which the head names; normals face the camera.
+    """Write a mesh's triangles as binary STL in mm, in `frame`; their normals face the camera.
 
     Raises
     ------

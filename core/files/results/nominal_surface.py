@@ -20,7 +20,7 @@ _TODO = Message("advice.export_nominal_again", "export the part again, as STEP o
 
 
 def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -> Triangles:
-    """Read the triangles of a STEP file, or of an STL file, binary or text; those without area are left out.
+    """Read a nominal surface, the triangles of a STEP or STL file in mm; triangles without area are left out.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -
 
 
 def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silent) -> dict[str, Triangles]:
-    """Read every nominal surface of a plan, by its name; names are of files in `folder` or whole paths.
+    """Read every nominal surface that a plan names, by its name: a file in `folder`, or a full path.
 
     A surface that several features name is as fine as the smallest of their tolerances wants it.
 
@@ -83,5 +83,5 @@ def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silen
 
 
 def nominal_names(plan: InspectionPlan) -> list[str]:
-    """List the names of the nominal surfaces of a plan."""
+    """List the file names of the nominal surfaces in a plan, each once."""
     return sorted({feature.deviation.nominal for feature in plan.features if feature.deviation is not None})

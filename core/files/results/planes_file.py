@@ -196,7 +196,7 @@ class _PlanesFile(ResultFile):
 
 
 def planes_id(fan: Fan) -> str:
-    """Compute twelve hex digits that identify these planes."""
+    """Compute twelve hex digits that identify a fan's light planes: a hash of them."""
     return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
 
 
@@ -205,7 +205,7 @@ _FACTS = ("converged", "flatness_assumed")
 
 
 def states_all_facts(path: Path) -> bool:
-    """Whether a planes.json states all facts on which a verdict depends; not in an earlier version, or damaged."""
+    """Whether a planes.json holds all facts that verdicts depend on; False for an earlier version, or if damaged."""
     try:
         tables = read_json(path)
     except InputError:
@@ -214,7 +214,7 @@ def states_all_facts(path: Path) -> bool:
 
 
 def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> None:
-    """Write planes.json, with the `camera` it was measured with; InputError if it cannot be written."""
+    """Write the light planes' calibration, and its `camera`, as planes.json; InputError if that fails."""
     degrees = {
         "constrained": [math.degrees(angle) for angle in calibration.angles],
         "free": [math.degrees(angle) for angle in calibration.free_angles],
@@ -257,7 +257,7 @@ def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> Non
 
 
 def read_planes(path: Path, camera: Camera) -> FanCalibration:
-    """Read planes.json, also one of another program that holds no more than the planes' `pi`.
+    """Read the calibration of the light planes for `camera` from planes.json; the planes' `pi` alone suffice.
 
     The poses come back without their points, which the file does not keep.
 

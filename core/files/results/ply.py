@@ -70,7 +70,7 @@ class MeshFile:
 
 
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write cloud.ply: x y z nx ny nz sigma intensity frame; behind them what the comments in its head say.
+    """Write a point cloud as binary PLY: x y z nx ny nz sigma intensity frame, and what its comments name.
 
     Where the surface's normal is not known, nx ny nz are the ray back to the camera: programs stumble over zeros.
     Places and directions are those of `frame`, which the head states; what is read back is in the camera frame again.
@@ -110,7 +110,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame 
 
 
 def read_cloud(path: Path) -> CloudFile:
-    """Read cloud.ply; whatever frame it is written in, the points are in the camera frame.
+    """Read a point cloud from cloud.ply, transformed to the camera frame from that it is written in.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def _told_offset(comments: Sequence[str], path: Path) -> Array:
 
 
 def write_mesh(path: Path, mesh: Mesh, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write mesh.ply: vertices with normals and sigma, triangles; `filled` marks those over holes, if there are any.
+    """Write a mesh as binary PLY: vertices with normals and sigma, triangles, with flags of those that fill holes.
 
     Raises
     ------
@@ -196,12 +196,12 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str, frame: ViewFrame = C
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Read the surface in mesh.ply; InputError as `read_mesh_file`."""
+    """Read the mesh in mesh.ply, in the camera frame; InputError if it is missing or damaged."""
     return read_mesh_file(path).mesh
 
 
 def read_mesh_file(path: Path) -> MeshFile:
-    """Read mesh.ply; whatever frame it is written in, the mesh is in the camera frame.
+    """Read mesh.ply with what its head tells, its mesh transformed to the camera frame.
 
     Raises
     ------

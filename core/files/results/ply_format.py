@@ -54,7 +54,10 @@ class _Property:
 
 
 def ply_bytes(ply: Ply, *, byte_order: str = "<") -> bytes:
-    """Encode a PLY file as binary, "<" or ">" as the byte order. Lists have their length in one byte, at most 255."""
+    """Encode a PLY file as binary, little-endian ("<") or big-endian (">"); a list has at most 255 entries.
+
+    Lists have their length in one byte.
+    """
     form = next(name for name, order in _ORDERS.items() if order == byte_order)
     head = ["ply", f"format {form} 1.0", *(f"comment {line}" for line in ply.comments)]
     parts: list[bytes] = []
@@ -75,7 +78,7 @@ def ply_bytes(ply: Ply, *, byte_order: str = "<") -> bytes:
 
 
 def parse_ply(data: bytes) -> Ply:
-    """Parse a PLY file, without copying the points.
+    """Parse the bytes of a PLY file; its arrays are views on `data`, not copies.
 
     Raises
     ------

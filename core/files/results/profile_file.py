@@ -48,7 +48,7 @@ class PictureStep:
 
     @classmethod
     def none(cls, index: int, name: str, reason: Message) -> PictureStep:
-        """Make the entry of a picture without a thickness."""
+        """Make the entry of picture `index` that gave no thickness, for this `reason`."""
         return cls(index, name, math.nan, math.nan, (0, 0), reason)
 
 
@@ -65,7 +65,9 @@ class ProfileFile:
 
 
 def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureStep], shown: int, of: str) -> None:
-    """Write profile.json; `shown` is the index of the picture whose faces gauge.json has, `of` the calibration's id.
+    """Write a profile's thickness, and what each of its pictures gave, as profile.json.
+
+    `shown` is the index of the picture whose faces gauge.json has, `of` the calibration's id.
 
     Raises
     ------
@@ -80,7 +82,7 @@ def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureSte
 
 
 def read_profiles_file(path: Path) -> ProfileFile:
-    """Read profile.json; InputError if it is missing, no JSON, or a value is wrong."""
+    """Read what each picture of a profile gave from profile.json; InputError if it is missing or wrong."""
     return checked_json(ProfileFile, read_json(path, todo=_TODO), path)
 
 
@@ -99,7 +101,7 @@ _COLUMNS = {
 
 
 def write_profiles_csv(path: Path, cloud: Cloud, position: Array, height: Array) -> None:
-    """Write one line a point: picture and line (from 1), where it lies along and above, σ of its depth, its place.
+    """Write a profile's points as CSV, a line each: picture, line, position, height, σ of its depth, coordinates.
 
     `position` and `height` (N,) are in mm. InputError if it cannot be written.
     """

@@ -93,23 +93,23 @@ class PastCheck:
 
     @property
     def by_default_mm(self) -> float:
-        """Limit in mm by the default stability: `default_mm`, or of older checks with nothing stated, `stated_mm`."""
+        """Limit in mm by the rig's default stability; of older checks with nothing stated, `stated_mm`."""
         return self.stated_mm if math.isnan(self.default_mm) else self.default_mm
 
     @property
     def looked_at(self) -> tuple[str, str, str]:
-        """Object of the check, and its means: a later check of the same replaces it."""
+        """Ids of pictures, calibration and characteristic; a later check with the same ones replaces this one."""
         return self.pictures_id, self.calibration_id, self.characteristic
 
     @property
     def values(self) -> dict[str, Any]:
-        """Values of the check as its file has them."""
+        """Values of the check by their names in the history file."""
         due = None if self.due is None else self.due.isoformat()
         return {**asdict(self), "taken_at": self.taken_at.isoformat(), "due": due}
 
     @property
     def of_artefact(self) -> ArtefactCheck | None:
-        """Check of an artefact against its certificate; None of pictures, or where the certificate was not stored."""
+        """The check as one of an artefact against its certificate; None if by pictures, or without a certificate."""
         if not self.artefact or math.isnan(self.certified_u_mm + self.error_mm) or not self.unseen_mm > 0:
             return None
         known = Artefact(
@@ -132,7 +132,7 @@ class PastCheck:
     def of_measured(
         cls, measured: ArtefactCheck, taken_at: datetime, ids: tuple[str, str], celsius: float | None
     ) -> PastCheck:
-        """Make the entry of an artefact that has just been measured, with the `ids` of calibration and pictures."""
+        """Make the history's entry of an artefact just measured, with the `ids` of calibration and pictures."""
         known = measured.artefact
         return cls(
             taken_at,
@@ -164,7 +164,7 @@ class PastCheck:
         likelihoods: tuple[float, ...] | None = None,
         default_mm: float = math.nan,
     ) -> PastCheck:
-        """Make the entry of a check that has just been made."""
+        """Make the history's entry of an interim check just made."""
         return cls(
             check.taken_at, check.calibration_id, check.pictures_id, check.verdict, check.p, check.step_mm,
             check.offset_px, check.offset_mm, check.error_mm, check.unseen_mm, check.stated_mm, celsius,
@@ -187,11 +187,11 @@ class RigHistory:
     checks: tuple[PastCheck, ...] = ()
 
     def of_calibration(self, calibration_id: str) -> tuple[PastCheck, ...]:
-        """Select the checks with these calibrations."""
+        """Select the checks made with the calibration `calibration_id`."""
         return tuple(check for check in self.checks if check.calibration_id == calibration_id)
 
     def artefacts(self, calibration_id: str, when: datetime) -> tuple[ArtefactCheck, ...]:
-        """Select for each artefact measured with these calibrations the check nearest in time to `when`."""
+        """Select for each artefact measured with a calibration the check nearest in time to `when`."""
         found: dict[str, ArtefactCheck] = {}
         for one in sorted(self.of_calibration(calibration_id), key=lambda one: abs(one.taken_at - when)):
             if one.artefact not in found and (measured := one.of_artefact) is not None:
@@ -199,20 +199,20 @@ class RigHistory:
         return tuple(found[name] for name in sorted(found))
 
     def charted(self, check: PastCheck) -> CheckChart:
-        """Make the chart of a check and those like it."""
+        """Make the control chart of a check together with the checks it is compared with."""
         return CheckChart(self.like(check), self.chart(check))
 
     def artefact_charts(self, calibration_id: str) -> tuple[CheckChart, ...]:
-        """Make for each artefact measured with these calibrations the chart of its results."""
+        """Make a control chart for each artefact measured with the calibration `calibration_id`."""
         last = {one.artefact: one for one in self.of_calibration(calibration_id) if one.artefact}
         return tuple(self.charted(last[name]) for name in sorted(last))
 
     def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
-        """Select the checks with the same calibrations by the same means: pictures, or one artefact."""
+        """Select the checks with the same calibration and means (pictures, or one artefact) as `check`."""
         return tuple(one for one in self.of_calibration(check.calibration_id) if one.artefact == check.artefact)
 
     def chart(self, check: PastCheck) -> ControlChart:
-        """Compute the limits for a check from those like it, taken before it, that have not failed.
+        """Compute the control limits for a check's error in mm from earlier checks like it that have not failed.
 
         Until there are enough of them, by what is stated of the rig and the check's own uncertainty.
         What is charted is the error of a step in parts of its height, times the height of this one: parts differ.
@@ -225,9 +225,7 @@ class RigHistory:
         return control_chart(np.array(before), math.hypot(check.stated_mm, check.unseen_mm / 2))
 
     def spread(self, calibration_id: str, when: datetime, stated: Stability | None = None) -> RigSpread | None:
-        """Estimate how much the rig changes from the checks by pictures before the day of `when`.
-
-        None without information.
+        """Estimate how much the rig changes from its checks by pictures before the day of `when`; None if unknown.
 
         Where its stability is `stated`, they say it only if that is more than the largest of what is stated: a
         statement may know of what no check has met, and no check makes it smaller. One that nothing changes stands.
@@ -263,7 +261,7 @@ class RigHistory:
         return RigSpread(factor, len(of_days), taken[0], taken[-1])
 
     def beyond(self, check: PastCheck) -> Message | None:
-        """Complain of a check that lies outside its limits; None within them, or where no stripe was found.
+        """Complain that a check's error lies outside its control limits; None if within, or if there is no error.
 
         An artefact is held to limits of its own history alone: its certificate is what E_n is for.
         """
@@ -296,7 +294,7 @@ class RigHistory:
         )
 
     def added(self, check: PastCheck) -> RigHistory:
-        """Add another check to the history."""
+        """Return the history with another check added."""
         others = (one for one in self.checks if one.looked_at != check.looked_at)
         return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
 
@@ -307,17 +305,17 @@ class _HistoryFile(ResultFile):
 
 
 def own_folder() -> Path:
-    """Return the user's own folder for the program's data, or that which DATA names."""
+    """Return the user's folder for the program's data, or that which the environment variable DATA names."""
     return Path(os.environ.get(DATA) or platformdirs.user_data_path("trisect", appauthor=False))
 
 
 def history_file(name: str) -> Path:
-    """Return the path of the history of the rig called `name`, in the user's own folder or that which DATA names."""
+    """Return the path of the file with the history of the rig called `name`, there or not."""
     return own_folder() / "rigs" / f"{name}.json"
 
 
 def read_history(name: str) -> RigHistory:
-    """Read the history of the rig called `name`, empty where there is none yet; InputError if it is damaged."""
+    """Read the history of checks of the rig called `name`; empty if it has none, InputError if it is damaged."""
     path = history_file(name)
     if not path.exists():
         return RigHistory(name)
@@ -326,7 +324,7 @@ def read_history(name: str) -> RigHistory:
 
 
 def store_check(name: str, check: PastCheck) -> RigHistory:
-    """Add a check to the history of the rig called `name` and write it; returns it all.
+    """Add a check to the history of the rig called `name`, write it and return it.
 
     Raises
     ------

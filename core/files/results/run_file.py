@@ -73,7 +73,7 @@ class RunRecord:
         settings: Mapping[str, Any],
         notes: Sequence[Message | str],
     ) -> RunRecord:
-        """Add `step` to the record; the part of an earlier run of the same step is replaced."""
+        """Record a run of `step`: its time in s, inputs, settings and notes, in place of an earlier run's."""
         return replace(
             self,
             settings={**self.settings, step: settings},
@@ -83,7 +83,7 @@ class RunRecord:
         )
 
     def without(self, steps: Collection[str]) -> RunRecord:
-        """Remove these steps from the record, but keep the hashes of the files they read."""
+        """Remove what is recorded of these steps; the hashes of the files they read are kept."""
 
         def left(told: Mapping[str, T]) -> dict[str, T]:
             return {step: one for step, one in told.items() if step not in steps}
@@ -99,7 +99,7 @@ class RunRecord:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """Notes of all steps, each once: the gravest first, else in the order of the steps."""
+        """Notes of all steps, each once, the gravest first; those of one weight in the order of the steps."""
         return gravest_first(note for notes in self.notes.values() for note in notes)
 
 
@@ -134,7 +134,7 @@ class _RunFile(ResultFile):
 
 
 def write_run(path: Path, record: RunRecord) -> None:
-    """Write run.json; InputError if it cannot be written."""
+    """Write the record of how results were made as run.json; InputError if it cannot be written."""
     write_json(
         path,
         {
@@ -155,7 +155,7 @@ def write_run(path: Path, record: RunRecord) -> None:
 
 
 def read_run(path: Path) -> RunRecord:
-    """Read run.json; InputError if it is missing or a field is not what it must be."""
+    """Read the record of how results were made from run.json; InputError if it is missing or wrong."""
     tables = read_json(
         path,
         todo=Message(

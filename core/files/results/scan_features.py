@@ -69,12 +69,12 @@ FEATURES_MEMBERS: Mapping[str, Member] = {
 
 
 def write_features(path: Path, features: ScanFeatures, key: str) -> None:
-    """Write features.npz under the `key` of what the features rest on; InputError if it cannot be written."""
+    """Write what a scan's pictures show (stripes, crossings) to features.npz, under `key`; InputError if that fails."""
     write_arrays(path, pack_features(features, key))
 
 
 def read_features(path: Path, key: str) -> ScanFeatures | None:
-    """Read features.npz, or a scan.npz, which holds the same; None if it is not there, or rests on other than `key`.
+    """Read a scan's features from features.npz or scan.npz; None if missing, or not stored under `key`.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def read_features(path: Path, key: str) -> ScanFeatures | None:
 
 
 def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
-    """Pack a scan's features into arrays, with the key of what they rest on."""
+    """Pack a scan's features into arrays, with the `key` of what they rest on."""
     crossings = features.crossings
     return {
         "features_key": np.array(key),
@@ -116,7 +116,7 @@ def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
 
 
 def unpack_features(arrays: Arrays) -> ScanFeatures:
-    """Unpack the features of `pack_features`; KeyError or ValueError if the arrays do not fit together."""
+    """Rebuild a scan's features from the arrays of `pack_features`; KeyError or ValueError if they do not fit."""
     frames = zip(
         unpack_texts(arrays["frame_names"]),
         unpack_centrelines("sweep", arrays),

@@ -150,7 +150,7 @@ class ScanFile:
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
-    """Write scan.npz; the same scan gives the same bytes. InputError if it cannot be written."""
+    """Write a solved scan as scan.npz, the same scan always to the same bytes; InputError if that fails."""
     common, speckle = scan.common, scan.speckle
     arrays: dict[str, NDArray[Any]] = {
         **pack_features(scan.features, scan.features_key),
@@ -176,7 +176,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
 
 
 def read_scan(path: Path) -> ScanFile:
-    """Read scan.npz.
+    """Read a solved scan from scan.npz.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def read_scan(path: Path) -> ScanFile:
 
 
 def scan_facts_of(path: Path) -> ScanFacts:
-    """Read the facts in scan.npz alone; nothing is known where there is none. InputError if it is damaged."""
+    """Read from scan.npz only the facts that verdicts depend on; all unknown without a file, InputError if damaged."""
     if not path.exists():
         return ScanFacts()
     arrays = read_arrays(path, _FACT_MEMBERS, todo=_TODO)
