@@ -22,7 +22,7 @@ HANDED_DOWN = "TRISECT_TEMPORARY_CACHE"
 
 
 def code_cache() -> Path:
-    """Return the folder that holds a folder of saved code for each version."""
+    """Return the folder of saved compiled code: the usual one, or a temporary one if that cannot be written."""
     usual = usual_cache()
     try:
         usual.mkdir(parents=True, exist_ok=True)
@@ -32,13 +32,13 @@ def code_cache() -> Path:
 
 
 def usual_cache() -> Path:
-    """Return the default folder of saved code."""
+    """Return the usual folder for compiled code saved between runs: in NUMBA_CACHE_DIR, else in the user's cache."""
     base = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("trisect", appauthor=False)
     return Path(base) / "compiled"
 
 
 def temporary_cache() -> Path:
-    """Make a temporary folder for saved code, unless a parent process has made one."""
+    """Make a temporary folder for compiled code, or return that which a parent process has made."""
     handed = Path(os.environ.get(HANDED_DOWN, ""))
     return handed if handed.name and handed.is_dir() else _made()[0]
 
@@ -53,7 +53,7 @@ def _made() -> tuple[Path, int]:
 
 
 def remove_temporary_cache() -> None:
-    """Remove the temporary folder that this process made, if it made one: at its end, or where a signal ends it."""
+    """Remove the temporary folder for compiled code, if this process has made one."""
     if _made.cache_info().currsize:
         folder, maker = _made()
         if os.getpid() == maker:  # not a fork of it
@@ -61,7 +61,7 @@ def remove_temporary_cache() -> None:
 
 
 def note_on_cache() -> Message | None:
-    """Note that saved code is lost at the end; None where it is kept."""
+    """Note that compiled code is lost at the program's end, as its folder cannot be written; None where it is kept."""
     if HANDED_DOWN not in os.environ:
         return None
     return Message(

@@ -201,16 +201,16 @@ _COMPLETE = "complete"
 
 
 def is_complete() -> bool:
-    """Whether all compiled code that a measurement needs was saved, here or with the package."""
+    """Whether it is recorded that all compiled code a measurement needs is saved, here or with the package."""
     return any((folder / _COMPLETE).exists() for folder in _places())
 
 
 def keep_complete() -> None:
-    """Record that all code was saved; where that cannot be written it is checked again."""
+    """Record that all compiled code is saved; does nothing where that cannot be written."""
     with contextlib.suppress(OSError):
         (FOLDER / _COMPLETE).touch()
 
 
 def saved_functions() -> int:
-    """Count the functions saved, for each combination of types."""
+    """Count the files of compiled code in this version's folder: one for each function and types of its arguments."""
     return sum(1 for _ in FOLDER.iterdir())

@@ -53,7 +53,7 @@ class Brought:
 
 
 def by_entry_points(group: str) -> Iterator[Brought]:
-    """Load what installed packages declare under a group of entry points."""
+    """Load what installed packages declare under the entry points' `group`, and yield each, usable or not."""
     for point in entry_points(group=group):
         yield _loaded(point, _origin(point))
 
@@ -71,17 +71,17 @@ def by_folders(package: str, constant: str) -> Iterator[Brought]:
 
 
 def left_out() -> frozenset[str]:
-    """Return the names of the wings that the variable WITHOUT leaves out."""
+    """Return the names of the wings to be left out, from the environment variable WITHOUT."""
     return frozenset(filter(None, map(str.strip, os.environ.get(WITHOUT, "").split(","))))
 
 
 def names_of_entry_points(group: str) -> frozenset[str]:
-    """The names that installed packages declare under a group of entry points; nothing is loaded."""
+    """List the names that installed packages declare under the entry points' `group`, without loading anything."""
     return frozenset(entry_points(group=group).names)
 
 
 def found_at(place: str) -> Any:
-    """Import the module and return the object at "module:name"."""
+    """Import a module and return the object in it that `place`, "module:name", names."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)
 

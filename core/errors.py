@@ -38,11 +38,11 @@ class InputError(Exception):
 
     @property
     def code(self) -> str:
-        """Code of the error for programs."""
+        """Code of the error's sentence, for programs."""
         return self.what.code
 
     def text_in(self, language: Language = ENGLISH) -> str:
-        """Return the sentence in a reader's language."""
+        """Return the error's whole text, with place and advice, in a `language`."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         parts = (where, self.what, self.todo)
         told = _with_short_words([visible(language(part)) for part in parts])
@@ -52,13 +52,13 @@ class InputError(Exception):
 
     @property
     def reason(self) -> Message:
-        """Place and reason, without a full stop and without what to do: for a message that names a reason."""
+        """Place and reason of the error, without a full stop and without advice, to be put into another message."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         return Message("input.reason", "{where}: {what}", where=where, what=self.what) if where.text else self.what
 
     @property
     def message(self) -> Message:
-        """Sentence as a message, for notes and files."""
+        """Whole sentence of the error as a message, for notes and files."""
         where = self.where if isinstance(self.where, Message) else plain(self.where)
         return _sentence(where, self.what, self.todo)
 
@@ -141,7 +141,7 @@ def _short(value: Any) -> Any:
 
 
 def refuse(error: InputError) -> None:
-    """Raise `error`: a job that must not be done fails with it."""
+    """Raise `error`: the job for something that must not be done."""
     raise error
 
 

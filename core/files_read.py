@@ -10,14 +10,14 @@ _told: set[Path] = set()
 
 
 def listen(listener: Callable[[Path], None] | None) -> None:
-    """Call `listener` with each file that is read from now on; None: call nothing."""
+    """Set the function that is called with the path of each file read from now on; None sets none."""
     global _listener
     _listener = listener
     _told.clear()
 
 
 def report_read(path: Path) -> None:
-    """Report to the listener that a file is read."""
+    """Call the listener set by `listen`, if there is one, with the path of a file that is read."""
     if _listener is not None and path not in _told:
         _told.add(path)
         _listener(path)

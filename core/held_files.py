@@ -42,7 +42,7 @@ def rename(path: Path, to: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Remove a file, if it is there; raises as `rename`."""
+    """Remove a file, if it is there; HeldOpen if another program holds it, OSError if it fails otherwise."""
     _patiently(lambda: path.unlink(missing_ok=True))
 
 
@@ -59,7 +59,7 @@ def remove_tree(folder: Path, *, leave: bool = False) -> None:
 
 
 def is_open_elsewhere(error: OSError) -> bool:
-    """Whether the reason is surely that another program has a file open."""
+    """Whether `error` surely is that another program has the file open."""
     return isinstance(error, HeldOpen) or getattr(error, "winerror", None) in _HELD
 
 

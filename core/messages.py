@@ -31,7 +31,7 @@ _CONTROLS = re.compile("[\\x00-\\x1f\\x7f-\\x9f\\u200e\\u200f\\u2028-\\u202e\\u2
 
 
 def visible(text: str, *, keep: str = "") -> str:
-    """Write out the control characters of a text from outside by their codes, all but those in `keep`."""
+    """Replace the control characters in a text, but those in `keep`, by their codes."""
     return _CONTROLS.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], text)
 
 
@@ -108,7 +108,7 @@ class Message:
 
     @property
     def is_sentence(self) -> bool:
-        """Whether it is a whole sentence; else it is a part of one, in English without a full stop."""
+        """Whether the message is a whole sentence, with a full stop; else it is a part of one."""
         return self.text.endswith(".")
 
     def with_values(self, change: Callable[[Any], Any]) -> Message:
@@ -120,7 +120,7 @@ class Message:
 
 
 def plural_message(code: str, one: str, many: str, /, *, n: int, **values: Any) -> Message:
-    """Make a message about `n` things: `one` for a single one, `many` for any other number; {n} may be in both."""
+    """Make a message about `n` things, with the text `one` if `n` is 1 and `many` otherwise; {n} may be in both."""
     return _restored(code, one, many, {"n": n, **values})
 
 
@@ -139,7 +139,7 @@ class Label(str):
 
 
 def label(english: str, /) -> str:
-    """Mark fixed words for the catalogues where they are not in the call that shows them."""
+    """Return `english` unchanged: marks fixed words for the catalogues where no call that shows them holds them."""
     return Label(english)
 
 
@@ -159,7 +159,7 @@ def _frozen(value: Any) -> Any:
 
 
 def iso_time(at: datetime, seconds: bool) -> str:
-    """Format date and time of day as in English texts, and so in files: '2026-11-24 11:32'."""
+    """Format a time as '2026-11-24 11:32', with seconds if asked, as in English texts and files."""
     return f"{at:%Y-%m-%d %H:%M:%S}" if seconds else f"{at:%Y-%m-%d %H:%M}"
 
 
@@ -214,7 +214,7 @@ class Language:
         return visible(told, keep="\n")
 
     def label(self, english: str, /, **values: Any) -> str:
-        """Translate fixed words; English where they are not known in this language."""
+        """Translate fixed words, with `values` in their places; English where this language does not have them."""
         text = self._label(english)
         return _Formatter(self).vformat(text, (), values) if values else text
 
@@ -226,19 +226,19 @@ class Language:
         return format(value, spec).translate(str.maketrans("-.,", f"{MINUS}{self.decimal}{NO_BREAK_SPACE}"))
 
     def numeral(self, digits: str) -> str:
-        """Convert digits as Python writes them to the decimal sign here and a true minus sign."""
+        """Put this language's decimal sign and a true minus into a number that Python has written."""
         return digits.replace("-", MINUS).replace(".", self.decimal)
 
     def time(self, at: datetime, *, seconds: bool = False) -> str:
-        """Format date and time of day, in the time zone that `at` is in."""
+        """Format date and time of day as in this language, in the time zone that `at` is in."""
         return self.times(at, seconds)
 
     def day(self, on: date) -> str:
-        """Format a date without time of day."""
+        """Format a date as in this language, without time of day."""
         return self.days(on)
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
-        """Join several texts to a list: see the module."""
+        """Join texts by commas; by semicolons if `how` is ";", with "and" before the last if it is "and"."""
         comma, semicolon = self.separators
         if how == "and" and len(texts) > 1:
             return self.conjunction.format(comma.join(texts[:-1]), texts[-1])
@@ -271,7 +271,7 @@ _SPREAD = re.compile(r"(?<=[\d°]) (?=± ?\d)|(?<=±) (?=\d)")
 
 
 def unparted(text: str) -> str:
-    """Put no-break spaces between a number and its unit, symbol or U, and within the name of a standard."""
+    """Put no-break spaces where a text must not be broken: between a number and its unit, and the like."""
     for space in (_WITH_UNIT, _STANDARD, _COUNTED, _SPREAD):
         text = space.sub(NO_BREAK_SPACE, text)
     return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)
@@ -286,7 +286,7 @@ def decimals_of(uncertainty: float) -> int:
 
 
 def capital(text: str) -> str:
-    """Make a text one that begins a sentence, or a title."""
+    """Make the first letter of a text a capital, for the beginning of a sentence or a title."""
     return text[:1].upper() + text[1:]
 
 
@@ -347,7 +347,7 @@ def from_json(kept: Mapping[str, Any] | str) -> Message:
 
 
 def as_text(message: Message | None) -> str:
-    """Convert a message to one text, for files that hold nothing but texts; '' for none. `from_text` reads it."""
+    """Convert a message to one text that `from_text` reads, for files that hold texts alone; '' for None."""
     return "" if message is None else json.dumps(as_json(message), ensure_ascii=False)
 
 

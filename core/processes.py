@@ -18,12 +18,12 @@ With a file it takes the place of the Python that such a program does not bring:
 
 
 def is_frozen() -> bool:
-    """Whether the program runs from one folder that contains its own Python."""
+    """Whether the program was frozen: it runs from a folder that contains its own Python."""
     return bool(getattr(sys, "frozen", False))
 
 
 def module_command(module: str, *arguments: str) -> tuple[str, ...]:
-    """Make the command that runs one of the program's modules, as `__main__`, in another process."""
+    """Make the command line that runs a module of the program, as `__main__`, in another process."""
     if is_frozen():
         return (sys.executable, MODULE, module, *arguments)
     # -P: a module that lies in the current folder by chance is not taken for one of Python's
@@ -31,7 +31,7 @@ def module_command(module: str, *arguments: str) -> tuple[str, ...]:
 
 
 def program_command(name: str, module: str) -> tuple[str, ...]:
-    """Make the command of one of the installed programs, by its own name; where it has none, of its module."""
+    """Make the command line of the installed program `name`, or that runs `module` where there is none."""
     program = Path(sys.executable).with_name(name + (".exe" if sys.platform == "win32" else ""))
     return (str(program),) if program.exists() else module_command(module)
 

@@ -19,7 +19,7 @@ class Progress(Protocol):
 
 
 def silent(step: str, done: int, total: int) -> None:
-    """Report nothing and never cancel: the default."""
+    """Ignore a report of progress, and never cancel: the default for `progress`."""
 
 
 class StepProgress:
@@ -37,7 +37,7 @@ class StepProgress:
         self._progress(step, done, total)
 
     def within_step(self, step: str, done: int, total: int) -> None:
-        """Report the position in the whole step again, whatever a part of it reports."""
+        """Report progress as the position in the whole step, whatever position in its part is given."""
         self._progress(*(self._last or (step, done, total)))
 
 

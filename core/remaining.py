@@ -80,7 +80,7 @@ COUNTED = ("camera views", "plane poses", "fan poses", "frames")
 
 
 def page_of(job: str, stage: str) -> tuple[int, int, str] | None:
-    """Return the page of a job's stage: its number from 1, of how many, its name; None where the job has one alone."""
+    """Return the number, count and name of the page a job's stage is on; None for a job of one page."""
     done = {step.name: step.page for step in GRAPH if step.name in _steps_of(job)}
     pages = list(dict.fromkeys(done.values()))
     page = next((page for step, page in done.items() if stage in _STAGES[step]), None)
@@ -186,7 +186,7 @@ class Remaining:
         self.seconds: dict[str, float] = {}
 
     def report(self, stage: str, done: int, total: int) -> None:
-        """Report the job's progress."""
+        """Record that `done` of `total` of the job's `stage` are done, from which the time left is estimated."""
         if stage != self._stage:
             self._close()
             self._stage, self._begun = stage, self._clock()
@@ -200,7 +200,7 @@ class Remaining:
             self._done, self._done_s = done / total, self._in_stage
 
     def finish(self) -> dict[str, float]:
-        """Return the seconds of each stage, to be remembered: the job is done."""
+        """End the job, and return by stage the seconds it took, to be remembered."""
         self._close()
         self._stage = ""
         return self.seconds
@@ -218,7 +218,7 @@ class Remaining:
 
     @property
     def left(self) -> float | None:
-        """Time left in s; None while it cannot be estimated."""
+        """Estimated time in s until the job is done; None while it cannot be estimated."""
         usual, waited = self._usual.get(self._stage, 0.0), self._in_stage - self._done_s
         if not usual:
             told = self._done > _TRUSTED and self._done_s > _NOTICED_S

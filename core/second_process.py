@@ -83,7 +83,7 @@ class SecondProcess:
         return self._calls.submit(self._done, call, item, progress)
 
     def wait(self, future: Future[Result], progress: Progress, step: str) -> Result:
-        """Wait for a future of `submit` and return its result; `progress` reports meanwhile, and may cancel.
+        """Wait for a future of `submit` and return its result; `progress` reports on `step` meanwhile, and may cancel.
 
         `step` is what it hears where the process tells nothing.
         """
@@ -128,7 +128,7 @@ class SecondProcess:
 
 @contextmanager
 def second_process(modules: Sequence[str] = ()) -> Iterator[SecondProcess | None]:
-    """Start a second process; None where there is no core for it, or it cannot be started."""
+    """Start a second process for calls, ended on exit; None where no core is left for it, or it cannot be started."""
     try:
         started = SecondProcess(modules) if cores() > 1 else None
     except OSError:

@@ -19,23 +19,23 @@ BUILT = SHIPPED / "sources.json"
 
 
 def brings_code() -> bool:
-    """Whether the package contains compiled loops. Light: nothing is compiled or loaded for it."""
+    """Whether the package comes with compiled loops, as far as its files tell."""
     return any(SHIPPED.glob("*/complete"))
 
 
 def texts(package: Path = PACKAGE) -> dict[Path, bytes]:
-    """Read all source files as they are now; empty in a frozen program."""
+    """Read the bytes of all source files below `package`; {} in a frozen program, which has none."""
     return {file: file.read_bytes() for file in sorted(package.rglob("*.py"))}
 
 
 def hashes(files: dict[Path, bytes]) -> dict[str, str]:
-    """Compute the hash of each text, by the file's name within the package."""
+    """Compute SHA-256 in hex of each file's bytes, by its path within the package."""
     return {file.relative_to(PACKAGE).as_posix(): hashlib.sha256(text).hexdigest() for file, text in files.items()}
 
 
 @cache
 def text_hash(rooms: tuple[str, ...]) -> str:
-    """Compute one hash over the text of some rooms of core. Raises InputError if nothing is known of it."""
+    """Compute one hash over the source files of some rooms of core; InputError if there are none."""
     found = {file: file.read_bytes() for room in rooms for file in sorted(PACKAGE.joinpath(room).rglob("*.py"))}
     names = hashes(found) or {name: one for name, one in built("files").items() if name.split("/")[0] in rooms}
     if not names:
@@ -44,16 +44,12 @@ def text_hash(rooms: tuple[str, ...]) -> str:
 
 
 def compiled_hashes() -> dict[str, str]:
-    """Read the hash of each source file that was compiled when the program was built. Raises InputError if none is
-    known.
-    """
+    """Read the hash of each source file that was compiled when the program was built; InputError if there is none."""
     return built("compiled")
 
 
 def built(part: str) -> dict[str, str]:
-    """Read the hashes stored when the program was built. Raises InputError if there are none: nothing is not to be
-    hashed.
-    """
+    """Read the hashes under `part` ("files", "compiled") from the program's build; InputError if none."""
     try:
         kept: dict[str, str] = json.loads(BUILT.read_text(encoding="utf-8"))[part]
     except (OSError, ValueError, KeyError, TypeError):
@@ -79,5 +75,5 @@ def _not_whole() -> Exception:
 
 
 def to_be_built(compiled: dict[Path, bytes]) -> str:
-    """Make the content of BUILT for a program frozen now; `compiled` are the source files that are compiled."""
+    """Make the content of the file BUILT: hashes of all source files, and of those in `compiled`."""
     return json.dumps({"files": hashes(texts()), "compiled": hashes(compiled)}, indent=1)

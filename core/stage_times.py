@@ -34,7 +34,7 @@ class StageTimes:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Count the time within for the stage `name`, on any thread."""
+        """Add the processor time spent within the `with` block, on any thread, to the stage `name`."""
         own = threading.get_ident() == self._thread
         if own:
             self._book_own()
@@ -48,19 +48,19 @@ class StageTimes:
                 self._since = now
 
     def add(self, seconds: Mapping[str, float]) -> None:
-        """Add the time of stages in another process."""
+        """Add processor times in s, by stage, that another process has spent."""
         for name, spent in seconds.items():
             self._book(name, spent)
 
     def seconds(self) -> Mapping[str, float]:
-        """Return processor time in s by stage, largest first."""
+        """Return the processor time in s of each stage, the longest first."""
         self._book_own()
         with self._lock:
             return dict(sorted(self._seconds.items(), key=lambda item: -item[1]))
 
     @property
     def wall_s(self) -> float:
-        """Time in s since the start."""
+        """Time in s since these times were begun, by the clock."""
         return time.perf_counter() - self._started
 
     def _book_own(self) -> None:
@@ -75,5 +75,5 @@ class StageTimes:
 
 
 def stage(times: Progress | None, name: str) -> AbstractContextManager[None]:
-    """Count a stage with `times.stage(name)`; nothing where there are none, or `times` is another kind of progress."""
+    """Return `times.stage(name)`, or a context that does nothing where `times` is None or no StageTimes."""
     return times.stage(name) if isinstance(times, StageTimes) else nullcontext()

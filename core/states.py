@@ -36,7 +36,7 @@ def changed_since(names: Sequence[str]) -> Message:
 
 
 def outdated_with(steps: Sequence[str]) -> Message:
-    """Make the reason why a result is out of date: the names of the steps it rests on that are.
+    """Make the reason why a result is out of date: the names of the `steps` it rests on that are out of date.
 
     Examples
     --------

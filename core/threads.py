@@ -56,7 +56,7 @@ def ordered_map(
 
 
 def result_of(future: Future[Result], idle: Callable[[], object] | None) -> Result:
-    """Wait for the result of a future, and call `idle` now and then meanwhile."""
+    """Wait for a future and return its result, calling `idle` now and then meanwhile."""
     while idle is not None and not wait([future], IDLE_EVERY_S).done:
         idle()
     return future.result()

@@ -38,13 +38,13 @@ _FIXED = re.compile(r"(<[^<>]*>|&\w+;|%\w+)")
 
 @cache
 def languages() -> tuple[str, ...]:
-    """List the names of all languages there are, English first."""
+    """List the names of all available languages, English first."""
     names = (path.name.removesuffix(".po") for path in _FOLDER.iterdir() if path.name.endswith(".po"))
     return ("en", *sorted(names))
 
 
 def preferred(wanted: Iterable[str]) -> str:
-    """Choose the first of several languages that there is, or one that is near it ('de' for 'de_CH'); else English."""
+    """Choose the first available of the languages `wanted`, or one near it ('de' for 'de_CH'); English if none is."""
     from babel.core import negotiate_locale
 
     names = [name.replace("-", "_") for name in wanted if name]

@@ -99,7 +99,7 @@ class Found(Generic[AWing]):
 
 @cache
 def wings() -> Found[Wing]:
-    """Load all wings, once."""
+    """Return all wings, loaded once, with notes on those that cannot be used."""
     return found_wings(Wing, chain(by_folders(OURS, "WING"), by_entry_points(GROUP)))
 
 
@@ -119,14 +119,14 @@ def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
 
 
 def how_to_get(name: str) -> Message:
-    """How a wing that is not there is had again, as the end of a sentence."""
+    """Tell how to get the wing called `name` that is missing, as the end of a sentence."""
     if name in left_out() or any(wing.name == name for wing in wings().away):
         return Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
     return Message("advice.wing_missing", "install Trisect with all its folders")
 
 
 def note_on_no_wings() -> Message | None:
-    """The sentence that tells which names in WITHOUT are of no wing; None where each is of one."""
+    """Note which names in the environment variable WITHOUT are of no wing; None where each is of one."""
     there, declared = wings(), names_of_entry_points(GROUP) | names_of_entry_points(WINDOW_GROUP)
     known = {*OUR_COMMANDS.values(), *(wing.name for wing in (*there, *there.away))}
     if not (unknown := sorted(left_out() - known - declared)):
