@@ -47,7 +47,7 @@ def reconstruct_twice(
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
 ) -> tuple[ScanFeatures, ScanResult]:
-    """Solve the scan, and once more where its surface bends; return the features last used, and the solution.
+    """Solve the scan and, if its surface bends, again with corrected features; return those last used and the result.
 
     By the paper's method it is solved once, as the paper does.
 
@@ -66,7 +66,7 @@ def reconstruct_twice(
 
 
 def corrected_for_bends(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan) -> ScanFeatures:
-    """Move centrelines and crossings to where the light planes cut the surface that `scan` has found.
+    """Move centrelines and crossings in the pictures to where the light planes cut the surface found by `scan`.
 
     Returns `features` themselves where the surface has no bend that matters.
     """

@@ -9,7 +9,7 @@ from core.messages import Message
 
 
 class Between(NamedTuple):
-    """Something moved after the frame `last_before` and before the frame `first_after`.
+    """Interval in which something moved: after the frame of index `last_before`, before that of index `first_after`.
 
     Frames that lie between them tell nothing of when.
     """
@@ -19,7 +19,7 @@ class Between(NamedTuple):
 
 
 def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message, ...]:
-    """List when something moved, in order of time; `names` are the names of the frames.
+    """Make one message "between {first} and {second}" of each movement, in order of time; `names` (F,) name the frames.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message
 
 
 def merged_movements(of_light: Sequence[Between], of_crossings: Sequence[Between]) -> tuple[Between, ...]:
-    """Merge two lists of movements in order; one in both is taken from the fan's light, which sees more frames.
+    """Merge movements seen by the fan's light with those seen by crossings, in order; of two that overlap the first.
 
     Examples
     --------

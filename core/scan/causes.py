@@ -84,7 +84,7 @@ class _Candidate:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Normal:
-    """Normal equations of the crossings for the numbers of all candidates, the network's unknowns eliminated.
+    """Normal equations for the parameters (K,) of all candidate causes of misfit, the network's unknowns eliminated.
 
     Parameters
     ----------
@@ -119,7 +119,9 @@ def compare_causes(
     of_calibration: Sequence[Deviation] = (),
     of_rig: Sequence[Deviation] = (),
 ) -> Causes:
-    """Compare candidate causes of crossings that are off too much; () where planes have fallen together.
+    """Find which causes, such as a movement or a drift, explain the misfit of a scan's crossings, most of it first.
+
+    () where none explains more than chance, or the sweeps' planes have fallen together.
 
     Parameters
     ----------
@@ -166,7 +168,10 @@ def compare_causes(
 
 
 def causes_of_light(features: ScanFeatures, movements: Sequence[Between]) -> Causes:
-    """The same by the fan's light alone, where the sweeps cannot be located: it moved in `movements`, or drifts."""
+    """Find the causes of a failed scan from the fan's light alone, for when no sweep could be located.
+
+    Candidates are that something moved in `movements`, and that it drifted; () where neither explains more than chance.
+    """
     seen, shifts, noise_px = fan_shifts(features)
     when, none = (seen[:, None] + 1) / max(len(features.frames), 1), np.zeros((0, 0))
     candidates = [
@@ -179,7 +184,7 @@ def causes_of_light(features: ScanFeatures, movements: Sequence[Between]) -> Cau
 
 
 def choose(normal: Normal) -> Causes:
-    """Choose the cause that explains most beyond chance, and then of the others the one that explains most of the rest.
+    """Choose one after another the cause that explains most of the misfit still left, if more than chance; () for none.
 
     Examples
     --------
@@ -387,7 +392,7 @@ _WORDS = {
 def note_on_causes(
     causes: Causes, facts: ScanFacts, movements: Sequence[Between], names: Sequence[str]
 ) -> tuple[Message, ...]:
-    """Note the likeliest cause with its share, and the causes that explain what is left.
+    """Make a note on the likeliest cause of misfit, with its share, and on further ones; () if there are no `causes`.
 
     It is grave where the scan's `facts` say the same of the likeliest, and so take the proof away; else a caution: that
     a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and

@@ -42,7 +42,7 @@ _FEWEST_POSES, _FEWEST_BLOCKS = 3, 6
 
 
 class Section(Enum):
-    """State of the skewness of the fan's stripes where it has not surely changed since the calibration."""
+    """Result of comparing the skewness of the fan's stripes with the calibration's: no sure change, or not known."""
 
     SAME = auto()
     NOT_KNOWN = auto()
@@ -50,9 +50,10 @@ class Section(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ChangedSection:
-    """The stripes' mean skewness in the scan, positive away from the camera, and `then`, in the calibration.
+    """Sure change of the mean skewness of the fan's stripes: `skewness` in the scan, `then` in the calibration.
 
-    `error` is the standard error of their difference, `shift_px` how far stripes lie aside by it at most.
+    Both are positive away from the camera. `error` is the standard error of their difference, `shift_px` how far
+    stripes lie aside by it at most.
     """
 
     skewness: float
@@ -68,9 +69,9 @@ class ChangedSection:
         )
 
     def deviation(self, fan: Sequence[Centreline], camera: Camera, calibrated: Fan) -> Deviation:
-        """Displace camera and fan by half of what the change of section may amount to: U is twice as much.
+        """Make the deviation in which all stripes of the fan lie half of `shift_px` aside; the camera stays.
 
-        All lines are moved aside alike in the picture; `fan` are the scan's.
+        U then contains twice as much, all that the change of section may amount to. `fan` are the scan's centrelines.
         """
         slopes = np.array([np.mean(np.abs(_slopes(fan, camera, pi))) for pi in calibrated.pis])
         step = np.zeros((calibrated.lines, 3))
@@ -81,9 +82,10 @@ class ChangedSection:
 def changed_section(
     poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline], camera: Camera, calibrated: Fan
 ) -> ChangedSection | Section:
-    """Compare the skewness of the stripes of the `fan` in a scan with that in its calibration's `poses`.
+    """Find whether the skewness of the `fan`'s stripes in a scan surely differs from that in its calibration's `poses`.
 
-    Not known where there are too few poses, or the stripes are too short, to tell how sure their mean is.
+    `Section.SAME` where it does not; `Section.NOT_KNOWN` where there are too few poses, or the stripes are too short,
+    to tell how sure their mean is.
     """
     pi = calibrated.pis[calibrated.lines // 2]
     now = _mean(_blocks(fan, camera, pi))

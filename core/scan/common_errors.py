@@ -33,7 +33,7 @@ from core.threads import ordered_map
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CommonErrors:
-    """A scan solved again with each of K displaced calibrations.
+    """Solutions of one scan: as calibrated, and again with each of K displaced calibrations.
 
     Parameters
     ----------
@@ -75,23 +75,23 @@ class CommonErrors:
             yield self._points(row, uv, sweep, rays if same else self._rays(row, uv)) - here
 
     def sigma(self, cloud: Cloud) -> Array:
-        """Standard uncertainty (N,) in mm of the depths of a cloud that is due to the calibrations."""
+        """Compute the standard uncertainty (N,) in mm of the depths of a cloud that is due to the calibrations."""
         variance = np.zeros(len(cloud))
         for change in self.changes(cloud.uv, cloud.sweep):
             variance += change[:, 2] ** 2
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
     def sigma_of(self, source: Source, cloud: Cloud) -> Array:
-        """Standard uncertainty (N,) in mm of the depths of a cloud that is due to a source; 0 without it."""
+        """Compute the standard uncertainty (N,) in mm of a cloud's depths that is due to one `source`; 0 without it."""
         variance = np.zeros(len(cloud))
         for one, change in zip(self.sources, self.changes(cloud.uv, cloud.sweep), strict=True):
             variance += change[:, 2] ** 2 if one == source else 0.0
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
     def planes(self, uv: Array, sweep: Index, row: int = 0) -> Array:
-        """Light planes (N, 3) in 1/mm of points seen at `uv` (N, 2) px in `sweep` (N,).
+        """Compute the light planes (N, 3) in 1/mm of points seen at `uv` (N, 2) px in `sweep` (N,).
 
-        As calibrated, or with the displacement `row` − 1.
+        `row` 0: as calibrated; k > 0: with the displacement k − 1.
         """
         fan, sweeps = self.fans[row], self.sweeps[row]
         still = np.pad(fan[::-1], ((0, 0), (0, sweeps.shape[1] - 3)))  # fan line k is sweep FAN − k = −1 − k
@@ -111,7 +111,7 @@ class CommonErrors:
 
     @classmethod
     def of_fan(cls, camera: Camera, fan: Fan, deviations: Sequence[Deviation]) -> CommonErrors:
-        """Make the errors of points of the fan alone by displaced calibrations, for a scan without sweeps."""
+        """Make the errors that displaced calibrations cause in points of the fan alone, for a scan without sweeps."""
         return cls(
             camera.image_size,
             tuple(one.source for one in deviations),

@@ -42,7 +42,7 @@ WORTH_A_NOTE = 0.1
 
 
 def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array], cloud: Cloud, camera: Camera) -> Array:
-    """Spread (F, 2) in px of the stripe's places within each frame's exposure, and the σ of its section at rest.
+    """Estimate (F, 2) in px how far each frame's stripe spreads within its exposure, and the σ of its section at rest.
 
     `sheets` are the light planes π (3,) of the frames that were located, `cloud` the points of all. NaN for frames that
     pass too few parts of the picture where others pass, too.
@@ -89,7 +89,10 @@ def _of_lens(square: Array, spread: Array) -> float:
 
 
 def notes_on_blur(blurs: Array) -> tuple[Message, ...]:
-    """Note if the hand moved so fast in many exposures, by `blurs` (F, 2), that points are less certain."""
+    """Make a note if the hand moved so fast in many exposures that points are less certain; () if not.
+
+    `blurs` (F, 2) are as `exposure_blurs` gives them.
+    """
     blur, at_rest = blurs.T
     known, blurred = np.isfinite(blur), blur > MATTERS * at_rest
     if blurred.sum() < max(1.0, WORTH_A_NOTE * known.sum()):

@@ -88,12 +88,12 @@ class FanRest:
 
     @property
     def known(self) -> bool:
-        """Whether enough of the fan's light is watched to show a movement or a drift."""
+        """Whether the fan's light is watched in enough frames, and enough places, to show a movement or a drift."""
         return self.frames >= 2 * LEAST_FRAMES and self.stretches >= LEAST_STRETCHES
 
     @property
     def unsteady(self) -> bool:
-        """Whether anything has moved, at once or gradually."""
+        """Whether part or rig has moved, at once or gradually."""
         return bool(self.movements) or self.drifts
 
     @property
@@ -102,7 +102,10 @@ class FanRest:
         return EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
-        """Note for the technician if anything moved, or if that is not known; `frames` frames are used."""
+        """Make a note for the technician if part or rig moved, or if too little light was watched to know; else ().
+
+        `names` are those of all frames, `frames` is how many of them are used.
+        """
         if not self.known:
             return (note_of("scan.rest_not_judged", n=self.frames, stretches=self.stretches, least=2 * LEAST_FRAMES),)
         if self.drifts:
@@ -123,7 +126,7 @@ class FanRest:
 
 
 def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> FanRest:
-    """Find which frames of a scan saw the fan's light where it was in the reference."""
+    """Find when part or rig moved during a scan, by shifts of the fan's light in its frames since the reference."""
     count = len(features.frames)
     known, shifts, noise = fan_shifts(features)
     at_rest = FanRest(np.ones(count, dtype=np.bool_), frames=len(known), stretches=shifts.shape[1])
@@ -162,7 +165,11 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
 
 
 def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
-    """Measure in frames (K,) how far in px the fan's stretches lie aside (K, C), with the noise of each (C,)."""
+    """Collect in the K frames that have them how far in px each of C stretches of the fan's light has shifted sideways.
+
+    Returns the indices (K,) of the frames, the shifts (K, C) and the noise (C,) of each stretch, as `fan_stretches`
+    cuts them.
+    """
     known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
     if not len(known):
         return known, np.zeros((0, 0)), np.zeros(0)
@@ -171,7 +178,7 @@ def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
 
 
 def light_at_rest(seen: Index, shifts: Array, noise_px: Array, first_after: int) -> bool:
-    """Whether the fan's light surely lies where it lay before a frame: nothing that it lights moved there.
+    """Whether the fan's light surely lies, from the frame `first_after` on, where it lay before; False if not known.
 
     `seen` (K,), `shifts` (K, C) and `noise_px` (C,) are as of `fan_shifts`.
     """

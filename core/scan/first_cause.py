@@ -48,7 +48,7 @@ class Suspect(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """A candidate cause, compared with the others.
+    """Candidate cause of a bad scan, with the share of the misfit that it explains.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Reason:
 
 
 def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[Reason, ...]:
-    """Sort the reasons by how much of the excess misfit of the scan their causes explain.
+    """Sort reasons why a scan failed: those whose causes explain much of its misfit first, the others as in `Suspect`.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
 
 @contextmanager
 def cause_first(reasons: Callable[[], Iterable[Reason]], causes: Sequence[Cause] = ()) -> Iterator[None]:
-    """Put the first of the reasons that holds before the text of a complaint raised in this block.
+    """Put the likeliest of the `reasons` before the text of an InputError that is raised in this block.
 
     `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared. The
     share of the one that is named is told.

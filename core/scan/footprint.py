@@ -25,9 +25,9 @@ LEAST_ACROSS = 0.08
 
 
 def surfaces_of(cloud: Cloud, camera: Camera) -> Array:
-    """Find the plane π (GRID, 3) that most points of `cloud` lie on in each part of the picture.
+    """Find for each of the G cells of a GRID over the picture the plane π (G, 3) that most of its points lie on.
 
-    NaN where not known.
+    NaN where none is known.
     """
     planes = np.full((GRID[0] * GRID[1], 3), np.nan)
     part = over_picture(cloud.uv, camera.image_size, GRID)
@@ -60,7 +60,9 @@ def px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array
 
 
 def footprint(uv: Array, sheet: Array, surface: Array, camera: Camera) -> Array:
-    """Compute px per mm as `px_per_mm`, on the planes `surface` (N, 3) or (3,); NaN where the light is not on them.
+    """Compute by how many px (N,) a stripe at `uv` (N, 2) on the plane `surface` moves when its sheet moves 1 mm.
+
+    `surface` (N, 3) or (3,) is in inverse-depth form; NaN where the light does not lie on it.
 
     With ρ the surface's plane, n·X − d = d·(π·r/ρ·r − 1) on the surface; its gradient over the picture is
     z·(π − ρ)·∂r/|π| where the two meet.

@@ -60,7 +60,7 @@ _MEDIAN_ERROR = 1.2533
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PartLight:
-    """Width of the stripes on a part against their width on the table.
+    """Width of the laser stripes on a part against their width on the table.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class PartLight:
 
     @property
     def surely(self) -> bool:
-        """Whether the stripes are surely wider on the part."""
+        """Whether the stripes are surely wider on the part than distance, slant and focus would make them."""
         return self.wider > max(SURELY * self.error, LEAST_WIDER)
 
 
@@ -97,10 +97,7 @@ class Blur(NamedTuple):
 
 
 def blur_of(plates: Iterable[tuple[Pose, Sequence[Centreline]]], camera: Camera, fan: Fan) -> Blur | None:
-    """Estimate the lens's blur from the stripes on the plates of a calibration, each with its pose.
-
-    None for too few.
-    """
+    """Estimate the lens's blur from the stripes on a calibration's plates, each with its pose; None for too few."""
     rows = []
     for pose, stripes in plates:
         normal = pose.rotation[:, 2]
@@ -132,7 +129,7 @@ def blur_of(plates: Iterable[tuple[Pose, Sequence[Centreline]]], camera: Camera,
 def light_on_part(
     stripes: Iterable[tuple[Sequence[Centreline], Array]], cloud: Cloud, camera: Camera, blur: Blur | None
 ) -> PartLight | None:
-    """Compare the width of `stripes` on the part with that on the table; None where too few frames show both.
+    """Compare the width of laser stripes on the part with that on the table; None where too few frames show both.
 
     Parameters
     ----------

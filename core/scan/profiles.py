@@ -17,7 +17,7 @@ from core.scan.sweeps.fan_lines import UNASSIGNED, possible_fan_lines
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Profiles:
-    """The profiles of one picture.
+    """Profiles in one picture of the fan alone: the fan's centrelines, their line numbers, and their points in space.
 
     `pieces` are the fan's centrelines, averaged along themselves, `line` the number of each (UNASSIGNED where it is not
     known); `cloud` their points, `Cloud.frame` the picture's number, in order along each piece.
@@ -31,7 +31,7 @@ class Profiles:
 def read_profiles(
     picture: Picture, frame: int, camera: Camera, fan: Fan, options: FeatureOptions | None = None
 ) -> Profiles:
-    """Measure the profiles in a `picture` (H, W) of the fan alone.
+    """Extract the fan's lines in a `picture` (H, W) of the fan alone, and triangulate their points on the fan's planes.
 
     The fan's lines are numbered by their order across the fan; where that leaves a choice, by the depth nearest to
     their neighbours'. A line that is numbered wrongly lies on no face with the others.

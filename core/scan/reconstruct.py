@@ -79,7 +79,7 @@ def reconstruct(
     progress: Progress = silent,
     fan_lines: FanLines | None = None,
 ) -> ScanResult:
-    """Solve the scan; `fan_lines` takes over the numbers an earlier solution has given to the fan's centrelines.
+    """Locate the sweeps of a scan and triangulate its points; `fan_lines` is a numbering of the fan known before.
 
     Raises
     ------

@@ -30,7 +30,11 @@ def frame_records(
     cloud: Cloud,
     camera: Camera,
 ) -> tuple[FrameRecord, ...]:
-    """Make one record a frame; `line` and `reasons` (M,) of each crossing, `solved` the frames with a light plane."""
+    """Make the record of each frame: its stripe, crossings and points, and the reason if it gave no points.
+
+    `line` and `reasons` (M,) are the fan's line of each crossing and whether it counts, `solved` the frames with a
+    light plane.
+    """
     rays = camera.rays(crossings.uv)
     count: Callable[[NDArray[np.bool_]], int] = np.count_nonzero
     records = []
@@ -75,7 +79,11 @@ def _why_no_points(reasons: Index, solved: bool) -> Message:
 def reasons_of(
     with_fan: NDArray[np.bool_], weights: Array, still: NDArray[np.bool_], located: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Decide the `CrossingUse` (M,) of each crossing; `still` and `located` (M,) tell whether its frames are."""
+    """Decide for each of M crossings whether it counts or why not, as `CrossingUse` values (M,).
+
+    `weights` (M,) are the adjustment's; `still` (M,) is False for what a movement separates, `located` (M,) for frames
+    without a plane.
+    """
     disagrees = np.where(with_fan, CrossingUse.NOT_THE_FAN, CrossingUse.NOT_THE_SWEEPS)
     reasons = np.where(weights < SILENCED, disagrees, CrossingUse.COUNTS)
     reasons = np.where(located, reasons, CrossingUse.NOT_LOCATED)

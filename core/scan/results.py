@@ -25,7 +25,7 @@ __all__ = ["FrameRecord", "ScanResult"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanResult:
-    """The surface points of a scan and what they rest on.
+    """Result of solving a scan: its surface points, the sweeps' light planes, and what they rest on.
 
     Parameters
     ----------
@@ -104,13 +104,16 @@ class ScanResult:
 
     @property
     def needs_cause(self) -> bool:
-        """Whether anything was found in its crossings that should not be there."""
+        """Whether the scan shows a fault whose cause is to be sought, such as a movement or too large a misfit."""
         seen = self.movements or self.drifted or self.fan_disagrees or self.rig_changed or self.second_bounces.pieces
         return bool(seen) or self.rows_seen_to_roll or self.scale > TIMES
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:
-        """Mask (M,) of the crossings of solved sweeps' own light; frames after a movement are not solved."""
+        """Mask (M,) of the crossings of solved sweeps that are no second bounces (light mirrored by the part).
+
+        Frames after a movement are not solved.
+        """
         table = self.crossings
         solved = np.isin(table.a, self.sweep_frames) & (table.with_fan | np.isin(table.b, self.sweep_frames))
         return np.asarray(solved & ~self.second_bounces.among(table))

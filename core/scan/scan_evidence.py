@@ -41,7 +41,7 @@ _ROUNDS = 2
 def scan_evidence(
     features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan, deviations: Sequence[Deviation]
 ) -> Evidence:
-    """Compute what the misclosures of a scan say of K deviations, as their normal equations.
+    """Compute from a scan's misclosures the normal equations for the sizes of K deviations of camera and fan.
 
     `scan` is the solution of `features` by the network with `camera` and `fan`.
     """
@@ -69,7 +69,10 @@ def scan_evidence(
 
 
 def change_of_misclosures(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
-    """Compute the change (M,) in 1/mm of the misclosures with another `fan` and `camera` (None: the same)."""
+    """Compute by how much (M,) in 1/mm misclosures change if `fan` and `camera` replace the calibrated ones.
+
+    `camera` None: the calibrated one.
+    """
     rays = equations.geometry.rays
     here = np.einsum("mi,mi->m", equations.differences(solution.pis), rays)
     there = replace(equations, fan=fan).differences(solution.pis)

@@ -73,7 +73,7 @@ _UNSIZED = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SingleChange:
-    """A change that explains crossings that disagree.
+    """Single change of the rig that explains why crossings disagree, with its size.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class SingleChange:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Explanation:
-    """Changes of which each alone explains crossings that disagree, the likeliest first; at least one.
+    """Single changes of the rig of which each alone explains why crossings disagree, the likeliest first; at least one.
 
     `misfit`: mean square of what crossings are off, in their variances, with none of them.
     """
@@ -119,7 +119,7 @@ class Explanation:
 
     @property
     def share(self) -> float:
-        """Share of the excess misfit that the likeliest change explains."""
+        """Share of the excess misfit of the crossings that the likeliest change explains."""
         return (self.misfit - self.changes[0].left) / (self.misfit - 1)
 
     @property
@@ -135,7 +135,7 @@ class Explanation:
 def explain_by_change(
     crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
 ) -> Explanation | None:
-    """Find the single change that explains why crossings disagree.
+    """Find the single changes of camera or fan that each explain why crossings disagree, the likeliest first.
 
     None where none does, or the misfit is not too large.
 

@@ -73,9 +73,9 @@ HOLD_STILL = Message("scan.advice_hold_still", "hold both still and scan again")
 
 @dataclass(frozen=True, slots=True)
 class Movement:
-    """Movement of part or rig; `when` is between two frames that both are crossed by others.
+    """Movement of part or rig, between two frames that other frames cross, and the score that shows it.
 
-    `score` is T, about 10 where nothing moved.
+    The score is T, about 10 where nothing moved.
     """
 
     when: Between
@@ -85,7 +85,7 @@ class Movement:
 def find_movement(
     crossings: CrossingTable, line: Index, camera: Camera, fan: Fan, read_out: ReadOut = AT_ONCE
 ) -> Movement | None:
-    """Find when something moved most noticeably during the scan; None if nothing did.
+    """Find the most noticeable movement of part or rig during a scan; None where none shows.
 
     `line` (M,) is the fan's line of each crossing, −1 between sweeps.
     """
@@ -150,9 +150,9 @@ class _Scores:
 
 
 def movements_of(equations: Adjustment, solution: Solution) -> tuple[Index, Index, Array]:
-    """Compute the changes of the crossings by a movement between two sweeps, for each place in the order of frames.
+    """Compute how each of M crossings changes with a movement between two sweeps, as a pattern (M, ≤ 12) in 1/mm.
 
-    The `earlier` and `later` (M,) sweep of each, −1 for the fan, and `pattern` (M, ≤ 12) in 1/mm, as of `_Scores`.
+    Returns the earlier and the later sweep (M,) of each crossing, −1 for the fan, and the pattern, as of `_Scores`.
     """
     table = equations.crossings
     b, rays = np.where(table.with_fan, -1, table.b), equations.geometry.rays
@@ -194,14 +194,20 @@ def _movements(rays: Array, inverse_depths: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RigidInterval:
-    """Crossings (M,) within which nothing moved, when something moved, and whether there are sweeps enough to tell."""
+    """Part of a scan in which nothing moved: the mask (M,) of its crossings, and all movements of the scan.
+
+    `known` is whether the scan has sweeps enough to show a movement.
+    """
 
     kept: NDArray[np.bool_]
     movements: tuple[Between, ...]
     known: bool
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
-        """Note for the technician if anything moved; `frames` frames are used."""
+        """Make a note for the technician if part or rig moved, with when; () if not.
+
+        `names` are those of all frames, `frames` is how many of them are used.
+        """
         if not self.movements:
             return ()
         return (note_of("scan.moved", when=between(names, self.movements), n=frames),)
@@ -216,9 +222,10 @@ def largest_rigid_interval(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> RigidInterval:
-    """Select the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
+    """Select the crossings of the largest part of a scan in which nothing moved, splitting it at each movement found.
 
-    `line` (M,) is the fan's line of each crossing, −1 between sweeps; `names` are the frames'.
+    The second largest is taken if the largest agrees with itself and with the fan clearly worse. `line` (M,) is the
+    fan's line of each crossing, −1 between sweeps; `names` are the frames'.
 
     Raises
     ------

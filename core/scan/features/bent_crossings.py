@@ -31,7 +31,7 @@ Name = tuple[int, int]
 
 
 class BentLine(NamedTuple):
-    """A centreline of N points, `arc` (N,) along it as crossings count it, and which of its points lie on a bend."""
+    """Centreline of N points, its arc length (N,) as crossings count it, and the mask (N,) of its points on a bend."""
 
     line: Centreline
     arc: Array

@@ -67,7 +67,7 @@ def all_crossings(
 
 
 def meetings_of(lines: Stack, picture: Index) -> Meetings:
-    """Find where centrelines of different pictures meet; `picture` (P,) is the picture of each piece, ascending."""
+    """Find the segments of different pictures' centrelines that cut each other; `picture` (P,) ascends, one a line."""
     finite = np.isfinite(lines.boxes).all(axis=1)
     boxes = lines.boxes[finite]
     if not len(boxes):

@@ -19,7 +19,7 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingTable:
-    """M crossings, one a row; a is the sweep, b the fan or the later sweep.
+    """Table of M crossings of centrelines, one a row; a is a sweep, b the fan or a later sweep.
 
     Parameters
     ----------
@@ -88,17 +88,17 @@ class CrossingTable:
         return self.b < 0
 
     def select(self, keep: NDArray[np.bool_] | Index) -> CrossingTable:
-        """Select the rows for which `keep` is true, or which it numbers."""
+        """Select the crossings by a mask (M,), or by the numbers of their rows."""
         arrays = {f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "half_length_px"}
         return CrossingTable(**arrays, half_length_px=self.half_length_px)
 
     def renumber(self, number: Index) -> CrossingTable:
-        """Give frame i the number `number[i]` of `number` (F,); the fan stays −1."""
+        """Replace each frame index i in a and b by `number[i]` of `number` (F,); the fan stays −1."""
         b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
         return replace(self, a=number[self.a], b=b)
 
     def swapped(self) -> CrossingTable:
-        """Exchange a and b of every crossing."""
+        """Exchange the two centrelines, a and b, of every crossing."""
         pairs = ("tangent", "sigma", "piece", "along", "cell", "share")
         turned = {f"{name}_{to}": getattr(self, f"{name}_{of}") for name in pairs for to, of in ("ab", "ba")}
         return replace(self, a=self.b, b=self.a, **turned)
@@ -113,7 +113,7 @@ class CrossingTable:
 
 @dataclass(frozen=True, slots=True)
 class CrossingWindow:
-    """Window of the local fits at crossings: a third of its reach in px, and the smallest angle (rad) accepted."""
+    """Settings of the local fits at crossings: a third of their reach in px, and the smallest angle (rad) accepted."""
 
     half_length_px: float = HALF_LENGTH_PX
     min_angle: float = LEAST_ANGLE
@@ -129,13 +129,13 @@ class ShadedLines:
 
 
 def shaded(pieces: Sequence[Centreline], window: CrossingWindow) -> ShadedLines:
-    """Prepare centrelines for crossing with many others."""
+    """Prepare one picture's centrelines for crossing with many others, with the σ that uneven brightness adds."""
     return ShadedLines(pieces, [shading_sigma(piece) for piece in pieces], Stack(pieces, window.half_length_px))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Meeting:
-    """One crossing: (a, b, piece of a, piece of b), and the σ of each centreline."""
+    """One crossing, with the frames and pieces (a, b, piece of a, piece of b) that meet and the σ in px of each."""
 
     index: tuple[int, int, int, int]
     sigma: tuple[float, float]
@@ -143,7 +143,7 @@ class Meeting:
 
 
 def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: CrossingWindow) -> list[Meeting]:
-    """Cross the centrelines of one picture, called frame `a`, with those of another, called frame `b`."""
+    """Find the crossings of one picture's centrelines, called frame `a`, with those of another, called frame `b`."""
     found = cross_centrelines(of_a.stack, of_b.stack, window.half_length_px, window.min_angle)
     return meetings_at(found, of_a, of_b, a, b)
 
@@ -151,7 +151,7 @@ def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: Cross
 def meetings_at(
     found: Sequence[tuple[int, int, Crossing]], of_a: ShadedLines, of_b: ShadedLines, a: int, b: int
 ) -> list[Meeting]:
-    """Add the σ of each centreline to crossings (piece of a, piece of b, crossing) that a search has `found`."""
+    """Add frames `a`, `b` and the σ in px of each centreline to crossings `found`, as (piece of a, of b, crossing)."""
     rows = []
     for i, j, crossing in found:
         at_a, at_b = of_a.stack.point_at(i, crossing.along_a), of_b.stack.point_at(j, crossing.along_b)
@@ -169,7 +169,7 @@ def meetings_at(
 
 
 def crossing_table(rows: Sequence[Meeting], window: CrossingWindow) -> CrossingTable:
-    """Make the table of these crossings, in their order."""
+    """Collect single crossings, found with the fits of `window`, in one table, in their order."""
 
     def of_crossings(name: str, *shape: int) -> Array:
         return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, *shape)

@@ -103,7 +103,7 @@ def extract_features(
     watch: Callable[[FrameFeatures], None] | None = None,
     times: StageTimes | None = None,
 ) -> ScanFeatures:
-    """Reduce a scan to features; parameters and errors as `extract_lines`."""
+    """Extract the centrelines of a scan's pictures and cross them; parameters and errors as of `extract_lines`."""
     return crossed(*extract_lines(reference, frames, total, options, progress, watch, times), options, progress)
 
 
@@ -117,7 +117,7 @@ def extract_lines(
     times: StageTimes | None = None,
     further: Mapping[int, FurtherExposures] | None = None,
 ) -> tuple[SeenLines, SeenLines]:
-    """Reduce a scan to centrelines as they are, and averaged along themselves.
+    """Extract the centrelines of a scan's pictures: first as they are, second averaged along themselves.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def gather(
     progress: Progress = silent,
     smoothed: bool = True,
 ) -> ScanFeatures:
-    """Make a scan's features of centrelines as they were extracted: cross them, then average them along themselves.
+    """Cross the centrelines of a scan as they were extracted, then average them along themselves: its features.
 
     `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
     centrelines stay as they are.
@@ -203,7 +203,7 @@ def gather(
 def crossed(
     seen: SeenLines, kept: SeenLines, options: FeatureOptions | None = None, progress: Progress = silent
 ) -> ScanFeatures:
-    """Cross the centrelines as `seen`, and make features of these crossings and of the centrelines in `kept`.
+    """Cross the centrelines in `seen`; return these crossings and the centrelines in `kept` as features of a scan.
 
     Of the `options` window and camera count here.
     """
@@ -301,7 +301,7 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FurtherExposures:
-    """Further exposures of a scan that share one number: shorter or longer than the first ones.
+    """One series of further exposures of a scan's pictures, shorter or longer than the first, sharing one number.
 
     `reference` is what the one of the fan alone shows, `stripe` the sweeps' in them, None if none shows any; `read`
     gives the one of a frame by that frame's name, None if it has none.
@@ -312,7 +312,10 @@ class FurtherExposures:
     read: Callable[[str], Picture | None]
 
     def of(self, name: str) -> Exposure | None:
-        """Read what the further exposure of a frame shows of the sweep; None if it is missing or of another size."""
+        """Extract the sweep from the further exposure of the frame `name`; None if missing or of another size.
+
+        None as well where no exposure of the series shows a stripe.
+        """
         picture = self.read(name)
         if picture is None or self.stripe is None or picture.shape != self.reference.base.shape:
             return None
@@ -367,12 +370,12 @@ class FrameReader:
 
 
 def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:
-    """Make an `Exposure` of the centrelines of a picture (H, W) and of its `saturated` pixels (H, W)."""
+    """Collect a picture's centrelines, `saturated` pixels (H, W) and mean grey, as a share of full scale."""
     return Exposure(lines, saturated, float(picture[::4, ::4].mean()) / np.iinfo(picture.dtype).max)
 
 
 def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:
-    """Mask (H, W) of the pixels that have the largest possible value."""
+    """Find the mask (H, W) of the pixels that have the largest value the picture's type can hold."""
     highest = np.iinfo(picture.dtype).max
     _, found = cv2.threshold(picture, highest - 1, 1, cv2.THRESH_BINARY)
     return np.asarray(found, dtype=np.uint8).view(np.bool_)

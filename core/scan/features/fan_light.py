@@ -44,7 +44,7 @@ LARGEST_GAIN = 2.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FanLight:
-    """Light of the fan in the reference, by which it is taken off frames of another brightness.
+    """Light of the fan in the reference picture, for removing what is left of it in frames of another brightness.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class FanLight:
 
     @classmethod
     def of(cls, base: Picture, bare: NDArray[np.float32], full_scale: float) -> FanLight:
-        """Find the fan's light in the picture `base` (H, W), of which `bare` (H, W) has the background in its place."""
+        """Separate the fan's light in the reference `base` (H, W) from `bare` (H, W), its background without it."""
         light = base - bare
         pixels = np.flatnonzero((light > 0) & (base < full_scale))
         light, level = light.ravel()[pixels], base.ravel()[pixels]
@@ -88,9 +88,9 @@ class FanLight:
         return cls(pixels, light, strong, under, least, tile, sums)
 
     def gain(self, difference: Difference) -> float:
-        """Estimate the ratio of a frame's light to the reference's, given frame − reference (H, W).
+        """Estimate the ratio of the fan's light in a frame to that in the reference, from frame − reference (H, W).
 
-        1 if about equal.
+        1 if they are about equal, or it cannot be told.
         """
         if not len(self.strong):
             return 1.0
@@ -105,7 +105,7 @@ class FanLight:
         return gain if _middle_mean(summed[bright] / self.sums[bright]) / change >= AS_WELL else 1.0
 
     def take_off(self, difference: Difference, gain: float) -> None:
-        """Subtract in place, from frame − reference (H, W), what such a gain has left of the fan in it."""
+        """Subtract in place the fan's light times (`gain` − 1) from `difference` (H, W), a frame − the reference."""
         left = np.float32(gain - 1) * self.light
         if np.issubdtype(difference.dtype, np.integer):
             left = np.rint(left)

@@ -28,7 +28,7 @@ _NAMED = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameFeatures(Excludable):
-    """The sweep's centrelines in one frame, or the `exclusion` that says why there are none.
+    """Features of one frame: the sweep's centrelines, or the `exclusion` that says why there are none.
 
     Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
     (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
@@ -58,7 +58,7 @@ class FrameFeatures(Excludable):
 
 
 class CrossingUse(IntEnum):
-    """Use of a crossing in the network: it counts, or the reason why it does not."""
+    """Use of a crossing in the network: that it counts, or the reason why it does not."""
 
     COUNTS = 0
     NOT_THE_FAN = 1
@@ -69,7 +69,7 @@ class CrossingUse(IntEnum):
 
     @property
     def message(self) -> Message:
-        """Reason why the crossing does not count."""
+        """Words for the use of the crossing: "counts", or the reason why it does not."""
         return _WHY_LEFT_OUT[self]
 
 
@@ -129,12 +129,12 @@ class FrameRecord:
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """Note movements, brightness that was subtracted, and further exposures among all frames of a scan."""
+    """Make notes on movements, changes of brightness and further exposures in a scan's frames; () for none."""
     return _moved_notes(frames) + _gain_notes(frames) + _exposure_notes(frames)
 
 
 def light_faults(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """Note faults of the light over all frames of a scan: that the room's light has changed."""
+    """Make the notes on faults of the light over a scan's frames: that the room's light has changed; else ()."""
     return _light_notes(frames)
 
 

@@ -36,7 +36,7 @@ def saturated_share(pieces: Sequence[Centreline]) -> float:
 
 
 def overexposed(fan: Sequence[Centreline], sweeps: Sequence[Centreline]) -> Message | None:
-    """Complain of stripes that are saturated too often; None if they are not."""
+    """Make the complaint that too many points of the fan's or the sweeps' stripes are saturated; None if not."""
     of_fan, of_sweeps = saturated_share(fan), saturated_share(sweeps)
     if max(of_fan, of_sweeps) <= MANY:
         return None
@@ -50,7 +50,7 @@ def overexposed(fan: Sequence[Centreline], sweeps: Sequence[Centreline]) -> Mess
 
 
 def notes_on_shine(fan: Sequence[Centreline], sweeps: Sequence[Centreline], full_scale: float) -> tuple[Message, ...]:
-    """Note stripes that are saturated here and there, and by how much to expose less; none where all of them are.
+    """Make a note if a part of the fan's points is saturated, and by how much to expose less; () for few or too many.
 
     It says that the surface shines only where the fan's stripes rise to a lobe there (`LOBE`). How far above
     `full_scale`, the largest grey level, a saturated stripe reaches is what its flanks say.

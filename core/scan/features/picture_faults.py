@@ -39,7 +39,7 @@ _CLEAR = 10.0
 
 
 class Mosaic(NamedTuple):
-    """Trace of a colour mosaic in the fan's stripes, and whether the picture was interpolated from one.
+    """Trace that a camera's colour mosaic leaves in the fan's stripes, in an interpolated picture or in a raw one.
 
     `width_px` is their width if they are below FINEST_PX and it is interpolated, `uneven` the least and most light of
     the fan by its sites' place in the tiles if it is raw; None if not.
@@ -60,13 +60,13 @@ def mosaic_of(fan: Sequence[Centreline], base: Picture) -> Mosaic:
 
 
 def faults_of(reference: ReferenceFeatures, mosaic: Mosaic) -> tuple[Message, ...]:
-    """Note the faults that the picture with the fan alone shows, of which one is its `mosaic`."""
+    """Make notes on compression, `mosaic` and speckle that are faults of the picture with the fan alone; else ()."""
     noise = reference.noise
     return (*notes_on_compression(noise), *_notes_on_mosaic(mosaic, noise), *_notes_on_speckle(reference))
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
-    """Note frames in which the errors of compression are larger than their noise."""
+    """Make a note if the errors of the frames' compression are larger than their noise; () if not."""
     if noise.compression.grey <= noise.read_grey:
         return ()
     return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)
@@ -131,7 +131,7 @@ def _scatter(pieces: Sequence[Centreline], noise: NoiseModel) -> float:
 
 
 def at_fault(faults: Sequence[Message]) -> Iterator[Reason]:
-    """Give the `faults` of pictures, if there are any, as the reason for a complaint about their results."""
+    """Yield the `faults` of a scan's pictures as one reason for a complaint about its results; nothing for none."""
     if faults:
         yield Reason(
             Suspect.PICTURES,

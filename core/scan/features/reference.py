@@ -40,12 +40,12 @@ Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 
 def sample_indices(count: int) -> list[int]:
-    """Choose at most `SAMPLE` indices of frames spread evenly over `count`."""
+    """Choose at most `SAMPLE` indices of frames, spread evenly from 0 to `count` − 1."""
     return sorted({round(i) for i in np.linspace(0, count - 1, min(count, SAMPLE))}) if count else []
 
 
 def quantile_reference(pictures: Sequence[Picture]) -> Picture:
-    """Compute the per-pixel low quantile of `pictures` (each height × width), by order statistics.
+    """Compute a reference picture (H, W) as the low quantile, pixel by pixel, of `pictures`, each (H, W).
 
     Raises
     ------
@@ -107,7 +107,7 @@ class ReferenceCheck:
 
 
 def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Sequence[Centreline]) -> ReferenceCheck:
-    """Compare a frame with the reference along the fan's centrelines, given `difference` = frame − reference.
+    """Measure how the fan's light has shifted, vanished or changed in a frame, from `difference` = frame − reference.
 
     A stripe A exp(−x²/2s²) shifted by δ leaves ±δ A exp(−½)/s at x = ±s, so δ follows from the two flanks; a sweep
     crosses few of a stripe's points, and the median over them does not see it.
@@ -130,9 +130,9 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
 
 
 def fan_stretches(fan: Sequence[Centreline]) -> list[tuple[int, slice]]:
-    """Divide the fan's centrelines into stretches of STRETCH points, in which its light is watched.
+    """Divide the fan's centrelines into stretches of STRETCH points, in each of which its light is watched.
 
-    Each is piece and points.
+    Each is the index of a centreline and the slice of its points; a shorter rest of a centreline is in none.
     """
     return [
         (number, slice(first, first + STRETCH))
@@ -175,7 +175,7 @@ LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
 
 @dataclass(frozen=True, slots=True)
 class FeatureOptions:
-    """Options of reducing pictures to features; None means chosen from the pictures.
+    """Options of extracting features from pictures; a stripe that is None is chosen from the pictures.
 
     A stripe's width that the pictures contradict gives way to the measured one.
 
@@ -194,7 +194,7 @@ class FeatureOptions:
 
 
 class LaserLight(NamedTuple):
-    """A frame minus the reference, brought to its exposure and to its light of the room.
+    """Difference of a frame from the reference picture, after changes of exposure and of the room's light are removed.
 
     `difference` (H, W) is what is left; `room` what the room's light has changed, in grey levels, as `RoomLight.change`
     states it, 0 where it was too small to be taken off; `gain` the factor of the frame's light over the reference's.
@@ -207,7 +207,7 @@ class LaserLight(NamedTuple):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceFeatures:
-    """Features of the picture with the fan alone, and the picture that frames are compared with.
+    """Features of the picture with the fan alone, and this picture itself, which frames are compared with.
 
     `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
     the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` and `light` are what
@@ -229,11 +229,11 @@ class ReferenceFeatures:
         return width, height
 
     def difference(self, picture: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
-        """Subtract the picture with the fan alone from a frame, both (H, W)."""
+        """Compute `picture` − reference (H, W), the reference being the picture with the fan alone."""
         return picture_difference(picture, self.base)
 
     def of_lasers(self, picture: Picture) -> LaserLight:
-        """Subtract the fan's picture from a frame, both (H, W), less changes of exposure and of the room's light."""
+        """Subtract the reference from a `picture` (H, W), then what changes of exposure and room light leave."""
         difference, room = self.difference(picture), 0.0
         changed = self.room.change(difference)
         if changed is not None:
@@ -244,7 +244,7 @@ class ReferenceFeatures:
         return LaserLight(difference, room, gain)
 
     def light_change(self, seen: LaserLight) -> float:
-        """Compute by what share the room's light has changed beside the exposure; 0 where stripes are not affected."""
+        """Compute by what share of the background room light has changed, apart from exposure; 0 if too little."""
         background = max(float(np.median(self.base[::16, ::16])), 1.0)
         grey = seen.room - (seen.gain - 1) * background if seen.room else 0.0
         if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
@@ -255,9 +255,9 @@ class ReferenceFeatures:
 def read_reference(
     picture: Picture, options: FeatureOptions | None = None, first: ReferenceFeatures | None = None
 ) -> ReferenceFeatures:
-    """Extract the fan's centrelines from a `picture` (H, W) with the fan alone.
+    """Extract the fan's centrelines from a `picture` (H, W) with the fan alone, and its room light and noise.
 
-    A further exposure uses those of the `first`.
+    Given `first`, what was read from the first exposure, a further one may show no line of the fan.
 
     Raises
     ------

@@ -42,7 +42,7 @@ BACKGROUND_CELLS = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RoomLight:
-    """The room's light in the reference.
+    """Light of the room in the reference picture, by which its changes in frames are measured.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class RoomLight:
 
     @classmethod
     def of(cls, base: Picture, fan: Sequence[Centreline], full_scale: float) -> RoomLight:
-        """Find the room's light in the picture `base` (H, W) with the fan on."""
+        """Separate the room's light in the picture `base` (H, W) from the light of the `fan`, given its centrelines."""
         bare = base.astype(np.float32)
         rows, columns = _grid(bare.shape)
         level = _levels(bare, rows, columns)
@@ -75,10 +75,10 @@ class RoomLight:
         return cls(bare, np.maximum(_levels(bare, rows, columns), 1.0), full_scale)
 
     def change(self, difference: Difference) -> tuple[NDArray[np.float32], float] | None:
-        """Estimate the light (H, W) that the room has added to a frame − reference (H, W), and its typical size.
+        """Estimate the light (H, W) in grey levels that the room has added since the reference, and its typical size.
 
-        That is in grey levels, the median where it is more than half of what a tenth of the picture has at least. None
-        if it is too little to matter.
+        `difference` (H, W) is a frame minus the reference. The size is the median where it is more than half of what a
+        tenth of the picture has at least. None if it is too little to matter.
         """
         rows, columns = self.cells.shape
         levels = _levels(difference, rows, columns)

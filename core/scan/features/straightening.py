@@ -19,12 +19,12 @@ from core.scan.features.crossings import CrossingTable
 
 
 def straightened(pieces: Sequence[Centreline], camera: Camera) -> tuple[Centreline, ...]:
-    """Map centrelines to pixels of the same camera without its distortion."""
+    """Map centrelines to where the same camera without its distortion would see them, in px."""
     return tuple(_straightened(piece, camera) for piece in pieces)
 
 
 def bent_back(crossings: CrossingTable, camera: Camera) -> CrossingTable:
-    """Map crossings of straightened centrelines back to the picture's own pixels.
+    """Map crossings of centrelines freed of distortion back to the pixels of the picture as it was taken.
 
     Places along centrelines, and cells, stay those of the straightened ones.
     """

@@ -56,7 +56,7 @@ _TUKEY_OF_NORMAL = (1 - 6 / REJECT_AT**2 + 15 / REJECT_AT**4) / (1 - 2 / REJECT_
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Network:
-    """Result of the adjustment: the sweeps' light planes.
+    """Result of adjusting all sweeps together: their light planes with covariance, and how well crossings agree.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def solve_network(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> Network:
-    """Adjust all `sweeps` planes to all `crossings`; `line` (M,) is the fan's line from 0, −1 between sweeps.
+    """Adjust the planes of `sweeps` sweeps to all `crossings`; `line` (M,) is the fan's from 0, −1 between sweeps.
 
     Where a `read_out` says that rows see different planes, these follow the hand.
 
@@ -139,7 +139,7 @@ def solve_network(
 
 
 def solve_planes(equations: Adjustment, progress: Progress = silent) -> tuple[Solution, bool]:
-    """Solve for the planes without covariance; also whether rejection was left out because it would drop the whole fan.
+    """Solve for the sweeps' planes without covariance; the flag is True if no outlier was rejected, to keep the fan.
 
     Raises
     ------

@@ -57,7 +57,7 @@ _RELIEF_QUANTILES = [0.025, 0.975]
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """Strength with which scale and place of a scan are fixed, without the uncertainty of camera and fan.
+    """Uncertainty of the scale and the depth of a scan as a whole, without what is due to camera and fan.
 
     `scale` is the relative standard uncertainty of heights, `depth_mm` that of the depth in the middle of the scene;
     `relief_mm` how much relief the sweeps saw; `tilt` in rad the range of the directions of 80 % of their stripes.
@@ -70,17 +70,17 @@ class Datum:
 
     @property
     def height_mm(self) -> float:
-        """Standard uncertainty in mm of a height as large as the relief, from the scale alone."""
+        """Standard uncertainty in mm, from the scale alone, of a height as large as the relief of the scan."""
         return self.scale * max(self.relief_mm, LEAST_RELIEF_MM)
 
     @property
     def weak(self) -> bool:
-        """Whether the uncertainty of a height exceeds WEAK_MM."""
+        """Whether the uncertainty from the scale of a height as large as the scan's relief exceeds WEAK_MM."""
         return self.height_mm > WEAK_MM
 
 
 def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
-    """Note how well scale and place are fixed; where the scale is weak, with what is missing.
+    """Make a note on how well the scale of a scan is fixed; where it is weak, with what is missing.
 
     `fan_relief_mm` is the relief that the fan's own points show (`relief_mm`), whether sweeps cross them or not.
     """
@@ -112,9 +112,10 @@ def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
 
 
 def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum | None:
-    """Compute the datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S); None where none was located.
+    """Compute how uncertain scale and depth of a scan are, by its planes `pis` (S, 3) with `covariance` (3S, 3S).
 
-    `crossings` are numbered by sweep. A sweep with too few of them to be located stays where it began, at infinity.
+    None where no sweep was located. `crossings` are numbered by sweep. A sweep with too few of them to be located stays
+    where it began, at infinity.
     """
     rays = camera.rays(crossings.uv)
     inverse_depths = np.einsum("mi,mi->m", rays, pis[crossings.a])
@@ -167,7 +168,7 @@ def relief_mm(rays: Array, inverse_depths: Array) -> float:
 
 
 def main_plane(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Find the plane π (3,) on which most points at `inverse_depths` (M,) on `rays` (M, 3) lie; also which (M,) do.
+    """Find the plane π (3,) with most of the points at `inverse_depths` (M,) on `rays` (M, 3); also return their mask.
 
     The best of many through three of the points, then fitted to all within `MAIN_PLANE_MM` of depth. Of all planes
     through fewer points the one that leans least.

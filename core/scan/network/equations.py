@@ -89,18 +89,18 @@ class Solution:
 
     @cached_property
     def inverse(self) -> Array:
-        """H⁻¹ (N, N)."""
+        """Inverse H⁻¹ (N, N) of the normal matrix of all unknowns."""
         return inverse_by(self.factor[0])
 
     @property
     def misfit(self) -> float:
-        """Sum of the weighted squares of all residuals, those of cells and hand from their priors included."""
+        """Sum of the weighted squares of all residuals, with those of the priors on fan's cells and hand's motion."""
         return float(self.weights @ self.residuals**2 + self.cells @ self.cells + self.motion)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Adjustment:
-    """The equations of `crossings` between `sweeps` planes and with the `fan`.
+    """Equations of the `crossings` that the planes of `sweeps` sweeps have with each other and with the `fan`.
 
     `line` (M,) is the fan's line from 0, −1 for crossings between sweeps.
     """
@@ -129,11 +129,14 @@ class Adjustment:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns of all sweeps."""
+        """Number of unknowns of all sweeps together, without the fan's cells."""
         return self.read_out.size * self.sweeps
 
     def start(self) -> Solution:
-        """Solve for the first time: every difference of planes counts as the typical one and lies across the fan."""
+        """Solve the first round, without an earlier solution: every difference of planes counts as the typical one.
+
+        Each of them lies across the fan.
+        """
         count = len(self.crossings)
         gains = np.full((count, 2), self.typical_gradient)
         return self._solve(np.ones(count), gains, self.geometry.rays, np.zeros(count))
@@ -148,7 +151,7 @@ class Adjustment:
         settled: Callable[[Solution, Solution], bool] | None = None,
         watched: Callable[[range], Iterable[int]] = iter,
     ) -> Solution:
-        """Solve by robust weights of the residuals: see `irls`.
+        """Solve by iteratively re-weighted least squares (`irls`), with robust weights of the residuals by `schedule`.
 
         Crossings not `kept` (M,) have no weight. `scaled`: residuals count in their own standard deviation where that
         is above 1, so that noise larger than stated silences none.
@@ -162,10 +165,10 @@ class Adjustment:
         return irls(self.start() if start is None else start, improve, schedule, settled, watched)
 
     def improve(self, before: Solution, weights: Array) -> Solution:
-        """Solve one Gauss–Helmert round with `weights` (M,): gains from `before`, at the adjusted crossings.
+        """Solve one more Gauss–Helmert round with `weights` (M,), linearised at the crossings adjusted by `before`.
 
-        Taken at the observed crossings they would pull all planes together, because noise in the rays costs less the
-        less the planes differ.
+        With gains at the observed crossings all planes would be pulled together, because noise in the rays costs less
+        the less the planes differ.
         """
         difference = self.differences(before.pis)
         gradient = floored(
@@ -177,13 +180,13 @@ class Adjustment:
         return self._solve(weights, gains, adjusted, moved)
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
-        """Compute the planes' covariance (3S, 3S) from the crossings' whole one, and the expected `Solution.misfit`."""
+        """Compute the planes' covariance (3S, 3S) from that of the crossings, and the `Solution.misfit` to expect."""
         middle, of_planes = self._middle(solution), solution.inverse[: self.unknowns]
         covariance = of_planes @ middle @ of_planes.T
         return np.asarray((covariance + covariance.T) / 2), self._expected(solution, middle)
 
     def expected(self, solution: Solution) -> float:
-        """Compute the expected `Solution.misfit` without the covariance."""
+        """Compute the `Solution.misfit` to expect if noise is as stated, without the planes' covariance."""
         return self._expected(solution, self._middle(solution))
 
     def _expected(self, solution: Solution, middle: Array) -> float:
@@ -201,7 +204,7 @@ class Adjustment:
         return np.asarray(middle)
 
     def shared_with_fan(self, solution: Solution) -> Array:
-        """Compute the covariance (3S, F) of the planes' errors π̂ − π with the errors z of the fan's cells.
+        """Compute the covariance (3S, F) of the planes' errors π̂ − π with the errors z of the fan's F cells.
 
         x̂ − x = H⁻¹(Aᵀ W e − P x) for unknowns x with the prior P and noise e that is none of theirs, and z is one of
         them with P = 1: so it is minus the block of H⁻¹.
@@ -209,7 +212,7 @@ class Adjustment:
         return -solution.inverse[: self.unknowns, self.unknowns :]
 
     def shared_with_own_lines(self, solution: Solution) -> Array:
-        """Compute the covariance (Q, 3) of a sweep's π̂ − π with the errors z of the cells of its own centrelines.
+        """Compute the covariance (Q, 3) of each sweep's π̂ − π with the errors z of the Q cells of its own centrelines.
 
         The crossings say A x = y + noise, so x̂ − x is −H⁻¹ Aᵀ W noise, prior aside.
         """
@@ -221,10 +224,7 @@ class Adjustment:
         return moved
 
     def noise(self, solution: Solution) -> csr_array:
-        """Make the matrix (M, …) from independent standard normal numbers to misclosures in 1/mm.
-
-        Less the fan's cells.
-        """
+        """Make the matrix (M, …) from independent standard normal numbers to misclosures in 1/mm, fan's cells aside."""
         return csr_array(hstack([self._shared(solution), diags_array(np.sqrt(self._rest(solution)))], format="csr"))
 
     def _shared(self, solution: Solution) -> csr_array:
@@ -246,7 +246,7 @@ class Adjustment:
         return felt
 
     def gradient(self, pis: Array) -> Array:
-        """Compute D (M, 2) in 1/(mm px) at every crossing of sweeps `pis` (S, 3)."""
+        """Compute the gradient D (M, 2) in 1/(mm px) of the misclosure at every crossing of sweeps `pis` (S, 3)."""
         return inverse_depth_gradient(self.differences(pis), self.geometry.jacobians)
 
     def _noise_of_rays(self, before: Solution, gains: Array, difference: Array) -> Array:
@@ -315,7 +315,7 @@ class Adjustment:
             matrix[weight.coords] += weight.data
 
     def differences(self, pis: Array) -> Array:
-        """Compute π_a − π_b (M, 3) of every crossing, in its row."""
+        """Compute the differences π_a − π_b (M, 3) in 1/mm at every crossing, in the picture row it is seen in."""
         table, v = self.crossings, self.crossings.uv[:, 1]
         other = np.where(table.with_fan[:, None], self._fan_pis, self.read_out.planes(pis[table.b], v))
         return np.asarray(self.read_out.planes(pis[table.a], v) - other)

@@ -37,7 +37,7 @@ _NEARER, _FARTHER = Message("scan.nearer", "nearer to the camera"), Message("sca
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CellErrors:
-    """Errors of the fan's F cells as the sweeps see them.
+    """Errors of the fan's F cells, short pieces of its centrelines, as the sweeps see them.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class CellErrors:
 
     @classmethod
     def of(cls, equations: Adjustment, solution: Solution) -> CellErrors:
-        """Take the errors of the fan's cells from the adjustment's solution; only of cells that are crossed."""
+        """Take from the adjustment's `solution` the errors of those of the fan's cells that sweeps cross."""
         table, first = equations.crossings, equations.unknowns
         share = equations.errors.fan.tocoo()
         row, cell, part = share.coords[0], share.coords[1], share.data
@@ -86,7 +86,7 @@ class CellErrors:
 
 
 def judge_fan_cells(cells: CellErrors, image_size: tuple[int, int], scale: float = 1.0) -> Judgement:
-    """Judge how far in mm the sweeps are from the fan's light in depth, over the picture; positive is farther.
+    """Judge over the picture how far in mm the sweeps lie off the fan's light in depth; positive is farther away.
 
     Where all residuals are `scale` times as large as stated, these may be as well.
     """
@@ -100,7 +100,10 @@ def judge_fan_cells(cells: CellErrors, image_size: tuple[int, int], scale: float
 
 
 def judge_network(scale: float, cells: CellErrors, image_size: tuple[int, int]) -> tuple[bool, tuple[Message, ...]]:
-    """Judge whether the sweeps are off the fan's light by its place in the picture, and note what is wrong."""
+    """Judge whether sweeps lie off the fan's light somewhere in the picture; return that and notes on what is wrong.
+
+    Where they do not, a note tells of a misfit that is too large: `scale` is the standard deviation of unit weight.
+    """
     if len(cells.z) and (found := judge_fan_cells(cells, image_size, scale)).p < SURELY:
         place = found.strongest
         note = note_of(

@@ -40,7 +40,7 @@ _SINGULAR = 1e-6
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FanSpeckle:
-    """The N points of the fan's numbered centrelines, and how the F cells of these centrelines move them.
+    """The N points of the fan's numbered centrelines, and how errors of these lines' F cells move them in depth.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class FanSpeckle:
             set_field(self, name, index)
 
     def places(self, uv: Array) -> Index:
-        """Find which of the fan's points (M,) those at pixels `uv` (M, 2) are; −1 for none."""
+        """Find for pixels `uv` (M, 2) the indices (M,) of the fan's points seen there; −1 for none."""
         if not len(self.uv) or not len(uv):
             return np.full(len(uv), -1, dtype=np.int64)
         distance, place = cKDTree(self.uv).query(uv)
@@ -88,7 +88,7 @@ def fan_speckle(
     cells: Index,
     covariance: Array,
 ) -> FanSpeckle:
-    """Compute how the network's cells move the fan's points.
+    """Compute how errors of the cells of the fan's centrelines move the fan's points in depth.
 
     Parameters
     ----------

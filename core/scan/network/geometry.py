@@ -21,7 +21,7 @@ from core.scan.features.crossings import CrossingTable
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingRays:
-    """Rays (M, 3) of the crossings and ∂(x, y)/∂(u, v) there, (M, 2, 2)."""
+    """Rays (M, 3) of the crossings, and the derivatives ∂(x, y)/∂(u, v) of each by its pixel, (M, 2, 2)."""
 
     rays: Array
     jacobians: Array
@@ -33,7 +33,7 @@ class CrossingRays:
         return cls(rays, camera.ray_jacobian(rays))
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> CrossingRays:
-        """Select the rows for which `keep` is true, or which it numbers."""
+        """Select the crossings by a mask (M,), or by the numbers of their rows."""
         return CrossingRays(self.rays[keep], self.jacobians[keep])
 
     def followed_by(self, other: CrossingRays) -> CrossingRays:

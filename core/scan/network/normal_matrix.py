@@ -11,7 +11,7 @@ from core.scan.features.crossings import Index
 
 
 def normal_matrix(design: csr_array, weight: Array) -> Array:
-    """Compute the lower triangle (N, N) of Aᵀ W A, in Fortran's order.
+    """Compute the lower triangle (N, N) of the normal matrix Aᵀ W A, stored by columns.
 
     `design` A (M, N) has sorted rows, `weight` W is (M,).
     """

@@ -47,7 +47,10 @@ SLOWEST_READOUT_MS = 71.0
 
 
 def row_forms(rays: Array, v: Array, rows: int, size: int) -> Array:
-    """Compute the factors (N, `size`) of the stacked coefficients at `rays` (N, 3) seen in rows `v` (N,) of `rows`."""
+    """Compute the factors (N, `size`) that give π·r at `rays` (N, 3), rows `v` (N,), from a plane's coefficients.
+
+    `rows` is how many the picture has.
+    """
     if size == 3:
         return rays
     basis = legvander(_time(v, rows), size // 3 - 1)
@@ -55,9 +58,9 @@ def row_forms(rays: Array, v: Array, rows: int, size: int) -> Array:
 
 
 def row_planes(coefficients: Array, v: Array, rows: int) -> Array:
-    """Compute π (N, 3) in 1/mm in rows `v` (N,) of planes with stacked `coefficients` (N, 3·(1 + K)).
+    """Compute the planes π (N, 3) in 1/mm that hold in rows `v` (N,), from stacked `coefficients` (N, 3·(1 + K)).
 
-    (1, …) for all.
+    `coefficients` (1, …) are of one sweep for all rows `v`; `rows` is how many the picture has.
     """
     size = coefficients.shape[1]
     if size == 3:
@@ -71,7 +74,7 @@ def _time(v: Array, rows: int) -> Array:
 
 
 def change_per_mm(pis: Array, inverse_depths: Array, rays: Array) -> tuple[float, float, float]:
-    """Compute the change of a plane π in 1/mm, component by component, by a shift of its sheet by 1 mm.
+    """Compute by how much in 1/mm each component of a plane π changes when its sheet of light shifts by 1 mm.
 
     Of sweeps `pis` (S, 3) that are crossed at `inverse_depths` (M,) on `rays` (M, 3). The shift at the picture's edges
     differs from that in its middle by TURNING of it.
@@ -83,17 +86,17 @@ def change_per_mm(pis: Array, inverse_depths: Array, rays: Array) -> tuple[float
 
 @dataclass(frozen=True, slots=True)
 class Hand:
-    """A hand that sweeps at about `speed_mm_s`, one way or the other, and trembles by about `tremor_mm`."""
+    """Motion of a hand that sweeps at about `speed_mm_s`, one way or the other, and trembles by about `tremor_mm`."""
 
     speed_mm_s: float
     tremor_mm: float
 
     def steady_mm(self, time_s: float) -> float:
-        """Standard deviation in mm of how far the steady hand moves a sheet from mid read-out to its end."""
+        """Compute the standard deviation in mm of how far a steady hand moves a sheet from mid read-out to its end."""
         return self.speed_mm_s * time_s / 2
 
     def tremor_terms_mm(self, terms: int, time_s: float) -> Array:
-        """Compute the standard deviations (terms,) in mm of the terms of a sheet's path that the tremor adds."""
+        """Compute the standard deviations (terms,) in mm that tremor adds to the Legendre terms of a sheet's path."""
         n = np.arange(1, terms + 1)
         waves = np.abs([spherical_jn(n, np.pi * f * time_s) for f in TREMOR_HZ]).max(axis=0)
         return np.asarray((2 * n + 1) * waves * self.tremor_mm / np.sqrt(2))
@@ -105,7 +108,7 @@ FASTEST = Hand(80.0, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class ReadOut:
-    """Read-out of pictures with so many `rows` over `time_ms`.
+    """Read-out of pictures of `rows` rows, one after another over `time_ms`, and how a hand moves the sheet meanwhile.
 
     `shifts_mm` (K,) standard deviation of what each term beyond the first moves a sheet of light by tremor, `steady_mm`
     that of the second by the hand's speed; no terms: every row sees the same plane. `per_mm` is the change (3,) in 1/mm
@@ -120,40 +123,40 @@ class ReadOut:
 
     @classmethod
     def of(cls, rows: int, time_ms: float, hand: Hand) -> ReadOut:
-        """Make the read-out of pictures in which that hand moves; its effect on a plane is not known yet."""
+        """Make the read-out of pictures of `rows` rows over `time_ms`, in which `hand` moves; `per_mm` is not set."""
         n = np.arange(1, MOST_TERMS + 1)
         size = hand.tremor_terms_mm(MOST_TERMS, time_ms / 1000) + hand.steady_mm(time_ms / 1000) * (n == 1)
         used = int(n[size > LEAST_SHIFT_MM * np.sqrt(2 * n + 1)].max(initial=0))
         return cls(rows, time_ms, (0.0,) * used).by(hand)
 
     def by(self, hand: Hand) -> ReadOut:
-        """Replace the hand, and keep the number of terms."""
+        """Replace the motion of the hand, keeping the number of terms."""
         shifts = hand.tremor_terms_mm(len(self.shifts_mm), self.time_ms / 1000)
         steady = hand.steady_mm(self.time_ms / 1000)
         return replace(self, shifts_mm=tuple(np.maximum(shifts, NO_SHIFT_MM).tolist()), steady_mm=steady)
 
     @property
     def size(self) -> int:
-        """Number of unknowns of one sweep."""
+        """Number of unknowns of the plane of one sweep."""
         return 3 * (1 + len(self.shifts_mm))
 
     def forms(self, rays: Array, v: Array) -> Array:
-        """Compute `row_forms` of this read-out: (N, size) for `rays` (N, 3) and rows `v` (N,)."""
+        """Compute the factors (N, size) that give π·r at `rays` (N, 3) in rows `v` (N,) from a sweep's coefficients."""
         return row_forms(rays, v, self.rows, self.size)
 
     def planes(self, coefficients: Array, v: Array) -> Array:
-        """Compute `row_planes` of this read-out: π (N, 3) in 1/mm in rows `v` (N,)."""
+        """Compute the planes π (N, 3) in 1/mm that hold in rows `v` (N,), from a sweep's stacked `coefficients`."""
         return row_planes(coefficients, v, self.rows)
 
     @property
     def moves(self) -> bool:
-        """Whether different rows see different planes."""
+        """Whether different rows of one picture see different light planes."""
         return bool(self.shifts_mm)
 
     def weight(self, sweeps: int) -> csr_array:
-        """Make the weight matrix of the prior on the numbers of so many sweeps in order of time; 0 for the planes' own.
+        """Make the prior's weight matrix for the unknowns of `sweeps` in order of time; 0 for the planes themselves.
 
-        The inverse of their covariance, 0 where there is no prior.
+        It is the inverse of the covariance of how the hand moves the planes within a read-out.
         """
         frame = np.arange(sweeps)
         kept = np.exp(-np.abs(frame[:, None] - frame) / KEPT_FRAMES)
@@ -171,7 +174,7 @@ class ReadOut:
         return csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
     def log_det_weight(self, sweeps: int) -> float:
-        """Compute the logarithm of the determinant of `weight`, less what does not depend on the hand."""
+        """Compute the logarithm of the determinant of the prior's weight matrix, up to what no hand changes."""
         frame = np.arange(sweeps)
         kept = np.exp(-np.abs(frame[:, None] - frame) / KEPT_FRAMES)
         first = self.shifts_mm[0] ** 2 * np.eye(sweeps) + self.steady_mm**2 * kept

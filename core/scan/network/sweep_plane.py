@@ -23,7 +23,7 @@ LEFT_OUT_AT = 5.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SweepPlane:
-    """The light plane of one sweep.
+    """Light plane of one sweep, fitted to its crossings with the fan.
 
     `pi` (3,) in 1/mm with `covariance` (3, 3); `used` (M,) which crossings it rests on; `condition` is the ratio of the
     largest to the smallest singular value of the used rays: how near to collinear the crossings are.
@@ -36,7 +36,7 @@ class SweepPlane:
 
 
 def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array) -> SweepPlane:
-    """Fit the plane through crossings at `rays` (M, 3) of known `inverse_depths` (M,) with `sigmas` (M,), in 1/mm.
+    """Fit a light plane to crossings at `rays` (M, 3) of known `inverse_depths` (M,) with `sigmas` (M,), in 1/mm.
 
     With four or more crossings the one whose residual from the plane of the others is largest is left out if it exceeds
     `LEFT_OUT_AT` standard deviations.
@@ -58,7 +58,7 @@ def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array) -> Swee
 
 
 def plane_condition(rays: Array) -> float:
-    """Compute the ratio of the largest to the smallest singular value of `rays` (M, 3).
+    """Compute the ratio of the largest to the smallest singular value of `rays` (M, 3): how near they are to one plane.
 
     Infinite when they are coplanar.
     """

@@ -38,7 +38,7 @@ _NOT_CROSSED: Mapping[str, Message] = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingMarks:
-    """Marks of the M crossings of one frame: `uv` (M, 2) in px, `status` (M,) `CrossingStatus`, and the reason of each.
+    """Marks of the M crossings of one frame: places `uv` (M, 2) in px, `status` (M,) `CrossingStatus`, and why.
 
     `with_fan` (M,) is True for those with the fan, False for those with other sweeps.
     """
@@ -50,7 +50,7 @@ class CrossingMarks:
 
 
 def mark_crossings(sweep: TrackedSweep, lines: FanLines) -> CrossingMarks:
-    """Make marks for all crossings with the fan, and for those with other sweeps that the plane rests on."""
+    """Make marks of a sweep's crossings with the fan, of those with other sweeps it rests on, and of those left out."""
     table = sweep.crossings
     place_in_plane = {int(row): k for k, row in enumerate(sweep.used)}
     uv: list[Array] = []

@@ -39,7 +39,7 @@ RELOCATION = 8
 
 @dataclass(frozen=True, slots=True)
 class PreviewOptions:
-    """Options of a preview.
+    """Options of a scan's preview: which points are shown, and when hints are given.
 
     Points up to `largest_sigma_mm` are shown (twenty times the result's: a frame alone is less sure), every `thin`-th
     of a stripe; of a long scan fewer, of all its frames alike, so that the sweeps' stripes have no more than
@@ -66,7 +66,7 @@ class StripeRays:
 
     @classmethod
     def of(cls, frame: int, pieces: Sequence[Centreline], camera: Camera) -> StripeRays:
-        """Collect the points of `pieces`, in their order."""
+        """Collect the points of the centrelines `pieces` of a `frame`, in their order, with their rays by `camera`."""
         uv = np.concatenate([np.zeros((0, 2)), *(piece.uv for piece in pieces)])
         normal = np.concatenate([np.zeros((0, 2)), *(piece.normal for piece in pieces)])
         sigma = np.concatenate([np.zeros(0), *(piece.sigma for piece in pieces)])
@@ -91,7 +91,7 @@ class StripeRays:
         return len(self.rays)
 
     def depth(self, pi: Array, covariance: Array) -> tuple[Array, Array]:
-        """Compute depth (N,) in mm on the plane `pi` (3,) with `covariance` (3, 3), and its σ.
+        """Compute the depth (N,) in mm of the stripe on the plane `pi` (3,) with `covariance` (3, 3), and its σ (N,).
 
         NaN where there is none.
         """
@@ -102,7 +102,7 @@ class StripeRays:
         return 1 / inverse, np.sqrt(np.maximum(variance, 0)) / inverse**2
 
     def cloud(self, depth: Array, sigma: Array, keep: NDArray[np.bool_]) -> PreviewCloud:
-        """Make a cloud of the points that `keep` (N,) selects, at `depth` (N,)."""
+        """Make a cloud for display of the points in the mask `keep` (N,), at `depth` (N,) with `sigma` (N,) in mm."""
         return PreviewCloud(
             (self.rays[keep] * depth[keep, None]).astype(np.float32),
             sigma[keep].astype(np.float32),
@@ -146,21 +146,21 @@ class Preview:
 
     @property
     def fan_lines(self) -> tuple[tuple[Centreline, ...], ...]:
-        """The fan's centrelines by line number, thinned for display, as far as they are settled."""
+        """The fan's centrelines for each line number, thinned for display; those not settled are in none."""
         pieces = list(zip(self._thin_fan, self._tracker.lines.line, strict=True))
         return tuple(tuple(piece for piece, k in pieces if k == line) for line in range(self._fan.lines))
 
     def cloud(self) -> PreviewCloud:
-        """Collect all points so far, the fan's own first."""
+        """Collect all points located so far, those of the fan first."""
         return PreviewCloud.joined([*self._fan_clouds(), *map(self._points_of, self._stripes)])
 
     @property
     def has_more(self) -> bool:
-        """Whether there is work that can wait until a frame is shown."""
+        """Whether earlier sweeps wait to be located again, which `go_on` does after a frame is shown."""
         return self._coming is not None or self._thinned or self._tracker.is_due
 
     def go_on(self) -> None:
-        """Do a part of the work that can wait until a frame is shown.
+        """Do a small part of locating earlier sweeps again with what later frames have shown.
 
         Called again and again it adjusts the anchors when that is due, and then makes the cloud anew by them,
         RENEWED_AT_ONCE sweeps at a time. The next frame brings the cloud once it is complete.

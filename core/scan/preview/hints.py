@@ -49,7 +49,7 @@ class HandState:
 
 
 def hints_for(state: HandState, limits: HintLimits) -> tuple[Message, ...]:
-    """Choose at most MOST_HINTS hints, the more urgent first; none when all is well."""
+    """Choose at most MOST_HINTS hints on moving the hand-held laser, the more urgent first; () when all is well."""
     hints: list[Message] = []
     if state.strength < limits.faint * state.full_scale:
         hints.append(Message("scan.hint_brighter", "Brighter: the stripe is faint."))

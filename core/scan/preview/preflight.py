@@ -36,7 +36,7 @@ _DAY_S = 86_400.0
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check with its result and what to tell the technician."""
+    """One check made before a scan: its name, its result and what to tell the technician."""
 
     name: Name
     state: State
@@ -84,7 +84,7 @@ class Preflight:
     section: ChangedSection | Section = Section.SAME
 
     def checks(self) -> tuple[Check, ...]:
-        """Make all checks, the reference first: the next three rest on it."""
+        """Make the checks before a scan: the reference, three that rest on it (lines, exposure, focus), calibration."""
         return self._reference(), self._lines(), self._exposure(), self._focus(), self._calibration()
 
     def _reference(self) -> Check:
@@ -218,7 +218,10 @@ def stripe_width(pieces: Iterable[Centreline]) -> float | None:
 
 
 def other_focus(width_px: float, then_px: float) -> Message | None:
-    """Complain that the fan's stripes are wider than in its calibration, by another focus; None if they are not."""
+    """Make the complaint that the fan's stripes are so much wider than in its calibration that the focus differs.
+
+    Widths are σ in px. None if they are not.
+    """
     return _out_of_focus(_width_changed(width_px, then_px), _REFOCUS) if width_px >= OTHER_FOCUS * then_px else None
 
 

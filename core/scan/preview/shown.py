@@ -23,7 +23,7 @@ Picture8 = NDArray[np.uint8]
 
 
 class CrossingStatus(IntEnum):
-    """Quality of a crossing, as it is marked."""
+    """Quality of a crossing, by which it is drawn: good, weak or left out."""
 
     GOOD = 0
     WEAK = 1
@@ -58,7 +58,7 @@ class PreviewCloud:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FramePreview(Excludable):
-    """Preview of one frame.
+    """Preview of one frame: its stripe, its crossings with their quality, its points and hints for the hand.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class FramePreview(Excludable):
 
 
 def cloud_of(preview: FramePreview) -> PreviewCloud:
-    """Make a cloud of the points of this frame alone."""
+    """Make a cloud for display of the points of one frame's `preview` alone."""
     return PreviewCloud(
         preview.points.astype(np.float32),
         preview.point_sigma.astype(np.float32),
@@ -126,7 +126,7 @@ def cloud_of(preview: FramePreview) -> PreviewCloud:
 
 
 def empty_preview(index: int, name: str, exclusion: Reason | None) -> FramePreview:
-    """Make the preview of a frame without a stripe, with the reason."""
+    """Make the preview of a frame that shows no stripe; `exclusion` is the reason."""
     none, empty = np.zeros(0), np.zeros((0, 2))
     return FramePreview(
         index,
@@ -211,7 +211,7 @@ class SettledScan:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownScan:
-    """A measured scan, light enough to be sent from process to process.
+    """Measured scan for display, light enough to be sent from process to process.
 
     Parameters
     ----------

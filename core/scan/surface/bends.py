@@ -63,7 +63,7 @@ OFF_SURFACE_MM = 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bends:
-    """Nodes of a surface (M, 3) in mm; unit normals towards the camera (M, 3), curvature (M, 3, 3) in 1/mm.
+    """Unit normals towards the camera (M, 3) and curvature (M, 3, 3) in 1/mm of a surface, at M nodes (M, 3) in mm.
 
     `curvature` (M, 3, 3) in 1/mm: the normal changes by K·δX over δX, so K is positive where the surface is convex;
     all zero where no bend is sure, and less than was fitted where it is hardly. `known` (M,) where there is a normal.

@@ -13,7 +13,7 @@ CELLS_ACROSS = 96
 
 
 class CoverageMap:
-    """Cells of the picture, about square, in which there are points.
+    """Map of the picture, in cells that are about square, of where points were measured and where light was seen.
 
     `cells` (rows, columns) is True where points are; `lit` where any laser light has been seen, measured or not.
     """
@@ -26,7 +26,7 @@ class CoverageMap:
         self.lit: NDArray[np.bool_] = np.zeros_like(self.cells)
 
     def add(self, uv: Pixels) -> None:
-        """Mark the cells of points measured at `uv` (N, 2) in px."""
+        """Mark the cells of points measured at `uv` (N, 2) in px, as covered and as lit."""
         self._mark(self.cells, uv)
         self._mark(self.lit, uv)
 

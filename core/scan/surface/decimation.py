@@ -49,7 +49,7 @@ HALVINGS = 7
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Decimated:
-    """A decimated mesh and the distances of the vertices of the whole one from it.
+    """Decimated mesh, and the distances of the original's vertices from it.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Decimated:
 
 
 def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimated:
-    """Decimate a mesh to about so many triangles; one that has no more stays as it is.
+    """Decimate a mesh to about `triangles` triangles; one that has no more than that stays as it is.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimat
 
 
 def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Decimated:
-    """Decimate a mesh as far as no vertex of the whole one lies farther than `largest_mm` from it.
+    """Decimate a mesh as far as every vertex of the original lies within `largest_mm` of the result.
 
     Raises
     ------

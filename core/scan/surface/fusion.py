@@ -38,7 +38,7 @@ tests/scan/surface/test_fusion.py holds it."""
 def fuse(
     cloud: Cloud, image_size: tuple[int, int], cell_px: float | None = None, progress: Progress = silent
 ) -> Surface:
-    """Fuse a cloud in the picture's grid.
+    """Fuse the points of a cloud to one for each cell of a grid over the picture.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
 
 @compiled()
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
-    """Sort points by their cell `cell_of` (N,), without those of −1; also where each of the `cells` begins and ends."""
+    """Sort the indices of points by cell, without those of `cell_of` −1; also return where each cell begins."""
     starts, filled = indices_of(cells + 1, 0), new_indices(cells)
     for i in range(len(cell_of)):
         if cell_of[i] >= 0:
@@ -165,7 +165,7 @@ class FusedCells(NamedTuple):
 
 @compiled()
 def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, gap: float, slope: float) -> FusedCells:
-    """Fuse the points of each of the occupied `cells` (M,).
+    """Fuse the points in each of the occupied `cells` (M,) to one weighted mean, of those in one layer of depth.
 
     Parameters
     ----------

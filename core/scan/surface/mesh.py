@@ -42,7 +42,7 @@ def build_mesh(
     max_edge_px: float | None = None,
     progress: Progress = silent,
 ) -> Mesh:
-    """Triangulate a fused surface.
+    """Triangulate the fused points of a surface, without triangles across steps.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ Ring = NDArray[np.int64]
 
 
 def fill_holes(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Mesh:
-    """Fill the holes of a mesh up to a span of `largest_mm`; `filled` is True for the new triangles.
+    """Fill the holes of a mesh up to a span of `largest_mm`, and mark the new triangles in its `filled`.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def fill_holes(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Me
 
 
 def holes(mesh: Mesh) -> list[Ring]:
-    """Find the rings of vertices round the holes of a mesh, each so that a triangle in it runs as the others do."""
+    """Find the rings of vertices round the holes of a mesh, ordered so that a triangle in one faces like the others."""
     flat = mesh.vertices[:, :2] / mesh.vertices[:, 2:]
     outside = _signed_area(flat[mesh.triangles]).sum()  # triangles all run one way round in the picture
     rings = [ring for ring in _rings(mesh.triangles) if 3 <= len(ring) <= MOST_EDGES and len(set(ring)) == len(ring)]
@@ -70,7 +70,7 @@ def holes(mesh: Mesh) -> list[Ring]:
 
 
 def border(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Find the edges (E, 2) that have no triangle on their other side, in the direction of their triangles."""
+    """Find the edges (E, 2) that belong to only one triangle, in the direction in which it runs."""
     a, b = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     count = int(triangles.max(initial=0)) + 1
     one_sided = ~np.isin(a * count + b, b * count + a)

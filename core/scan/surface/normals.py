@@ -53,7 +53,7 @@ RADIUS_SAMPLE = 300
 
 
 def pixel_angle(points: Array, uv: Array) -> float:
-    """Measure the ray coordinate per pixel, about 1/focal length in pixels, of `points` (N, 3) seen at `uv` (N, 2).
+    """Measure the change of x/z per pixel, about 1/focal length in px, of `points` (N, 3) seen at `uv` (N, 2).
 
     Raises
     ------

@@ -114,20 +114,27 @@ class Stripe:
         return self.known & self.tilt.any(axis=1)
 
     def offsets(self, light_mm: float, blur_px: float, toward: Array) -> Array:
-        """Compute the offset (N,) in px along its normal of the light from the light plane's own curve."""
+        """Compute how far (N,) in px along its normal the centreline lies off the curve of the light plane itself.
+
+        `light_mm` is σ of the sheet of light, `blur_px` of the lens's blur, `toward` (3,) the direction towards the
+        light.
+        """
         own = np.minimum(light_mm / np.abs(self.slope), self.line.width)  # no light is wider than its blurred section
         squarely = np.maximum(self.normal @ toward, LEAST_COSINE)
         off = own**2 * (self.tilt @ toward / squarely - 1.5 * self.bend) + 0.5 * blur_px**2 * self.arc
         return np.where(self.known, np.clip(off, -LARGEST_SHIFT * own, LARGEST_SHIFT * own), 0.0)
 
     def brightness(self, light_mm: float, blur_px: float) -> Array:
-        """Compute the logarithm (N,) of the light on the surface: the height of its section, the blur taken out."""
+        """Compute the logarithm (N,) of the light on the surface from the stripe's height, lens's blur taken out."""
         own = np.maximum((light_mm / self.slope) ** 2, 1e-6)
         return np.asarray(np.log(np.maximum(self.line.strength, 1e-3)) + 0.5 * np.log1p(blur_px**2 / own))
 
 
 def estimate_light(stripes: Sequence[Stripe]) -> tuple[float, float, float]:
-    """Estimate σ in mm of the fan's light and of the sweeps', and the lens's blur in px, from S² = w²/d'² + b²."""
+    """Estimate σ in mm of the fan's sheets and of the sweeps', and σ in px of the lens's blur, from widths of stripes.
+
+    By S² = w²/d'² + b².
+    """
     rows, squares = [np.zeros((0, 3))], [np.zeros(0)]
     for stripe in stripes:
         keep = np.flatnonzero(stripe.known & ~stripe.line.saturated)[::POINT_STEP]

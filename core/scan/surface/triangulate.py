@@ -32,7 +32,7 @@ class OwnLine:
     cell_px: float
 
     def with_noise(self, centreline: Centreline, rays: Array, forms: Array, slope: Array, focal: float) -> Array:
-        """Compute the variance (N,) in 1/mm² of r·(π̂ − π), the line's own noise in w included.
+        """Compute the covariance (N,) in 1/mm² of π̂·r with the error that the centreline's own noise makes in it.
 
         A cell's mean is off by z times its standard deviation. Points are averages over cells; the covariance changes
         so little from one to the next that an average of it is its value at the point.
@@ -53,7 +53,7 @@ def triangulate(
     sweep: int,
     own: OwnLine | None = None,
 ) -> Cloud:
-    """Triangulate one centreline on the light plane `pi` (3,), with `covariance` (3, 3).
+    """Triangulate the points of one centreline on the light plane `pi` (3,), in 1/mm, with `covariance` (3, 3).
 
     Both are larger where each row sees another plane (`core.scan.network.read_out`).
     With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ² + 2 c,

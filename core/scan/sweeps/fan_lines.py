@@ -67,7 +67,7 @@ AMBIGUOUS = Message("scan.fan_light_ambiguous", "it could be more than one of th
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Face:
-    """Plane face on which two centrelines lie, i of line k and j of line m: `of` ((i, k), (j, m)).
+    """Plane face that two of the fan's centrelines lie on if i is of line k and j of line m: `of` ((i, k), (j, m)).
 
     `on` (n, N): whether each centreline lies on it, too, were it of line 0 … N − 1.
     """
@@ -78,7 +78,7 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class FanLines:
-    """Fan line (from 0) of each centreline; UNASSIGNED where none fits, and then the reason.
+    """Numbering of the fan's centrelines: the line (from 0) of each, or UNASSIGNED and the reason.
 
     `choices` holds the lines that the rules alone would allow; a number is sure where there is but one. `allowed` says
     which numbers go together (one True for all: any), `faces` where centrelines could lie.
@@ -92,29 +92,29 @@ class FanLines:
 
     @classmethod
     def settled_as(cls, line: Sequence[int]) -> FanLines:
-        """Make a numbering of line numbers that were settled earlier."""
+        """Make a numbering that holds as settled the line numbers of centrelines known from an earlier solution."""
         return cls(tuple(line), (None,) * len(line), tuple((k,) for k in line))
 
     @property
     def settled(self) -> int:
-        """Number of centrelines that the rules alone have numbered."""
+        """Count of the centrelines for which the rules of numbering, without the sweeps, allow one line only."""
         return sum(k != UNASSIGNED and len(c) == 1 for k, c in zip(self.line, self.choices, strict=True))
 
     @property
     def sure(self) -> FanLines:
-        """The numbering without all numbers that the rules alone have not settled."""
+        """Numbering in which only those centrelines keep a number for which the rules allow one line only."""
         kept = (k if len(c) == 1 else UNASSIGNED for k, c in zip(self.line, self.choices, strict=True))
         return replace(self, line=tuple(kept))
 
     @property
     def on_faces(self) -> int:
-        """Number of centrelines that lie on one plane face with two others, as they are numbered."""
+        """Count of the centrelines that lie on one plane face with two others if their numbers are true."""
         numbers = np.array(self.line)[:, None] == np.arange(self.allowed.shape[1])
         lying = [np.any(on & numbers, axis=1) for on in _known(self.faces, numbers)]
         return int(np.count_nonzero(np.any([on for on in lying if on.sum() > 2] or [False], axis=0)))
 
     def agreed(self, others: Sequence[FanLines]) -> FanLines:
-        """Remove the numbers that any of the `others` contradicts."""
+        """Set to UNASSIGNED each centreline to which any of the `others` gives another line."""
         line, reason = list(self.line), list(self.reason)
         for i, k in enumerate(line):
             if {k, *(lines.line[i] for lines in others)} - {k, UNASSIGNED}:
@@ -339,7 +339,7 @@ def _numbered(options: Options, sure: Options, kept: Array) -> FanLines:
 
 
 def settle_by_sweeps(lines: FanLines, piece: Counts, rays: Array, inverse_depths: Array, fan: Fan) -> FanLines:
-    """Decide by the sweeps where the order across the fan left a choice.
+    """Decide by the sweeps' planes which line a centreline is where the order across the fan left a choice.
 
     `piece` (M,), `rays` (M, 3): crossings with the fan; `inverse_depths` (M,) what the sweeps' planes, solved without
     the unsure centrelines, say there. The line that comes nearest is taken if it is twice as near as any other, the

@@ -63,7 +63,7 @@ Piece = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class SecondBounces:
-    """The `pieces` that are, or may be, second bounces."""
+    """Pieces of the sweeps' centrelines that are, or may be, second bounces: light mirrored by a shiny side."""
 
     pieces: frozenset[Piece] = frozenset()
 
@@ -71,17 +71,17 @@ class SecondBounces:
         return piece in self.pieces
 
     def among(self, crossings: CrossingTable) -> NDArray[np.bool_]:
-        """Mask (M,) of the crossings with such a piece."""
+        """Find the mask (M,) of the crossings on a piece that is, or may be, a second bounce."""
         return _of(self.pieces, crossings.a, crossings.piece_a) | _of(self.pieces, crossings.b, crossings.piece_b)
 
     def counted(self, records: Sequence[FrameRecord]) -> tuple[FrameRecord, ...]:
-        """Add to the records of all frames how many of their pieces are second bounces."""
+        """Copy the records of all frames, adding how many of each frame's pieces are second bounces."""
         count = Counter(frame for frame, _ in self.pieces)
         return tuple(replace(one, second_bounces=count[one.index]) for one in records)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Note for the technician if any piece is a second bounce."""
+        """Note for the technician if any piece is a second bounce; () if none is."""
         if not self.pieces:
             return ()
         return (note_of("scan.second_bounces", n=len(self.pieces), frames=len({frame for frame, _ in self.pieces})),)
@@ -93,7 +93,7 @@ NO_BOUNCES = SecondBounces()
 def find_second_bounces(
     frames: Sequence[FrameFeatures], numbered_crossings: tuple[CrossingTable, Index], camera: Camera, fan: Fan
 ) -> SecondBounces:
-    """Find the pieces of the sweeps' light that are second bounces.
+    """Find the pieces of the sweeps' centrelines that are second bounces: light mirrored by a shiny side.
 
     With the crossings goes the fan's line (M,) of each, −1 between sweeps.
     """
@@ -206,7 +206,7 @@ def _judged(
 
 
 def free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) -> Array:
-    """Find unit vectors (S, 3) along which planes are free because their crossings' rays are coplanar; else zero."""
+    """Find for each sweep the unit vector (S, 3) along which its plane is free as all its rays are coplanar; else 0."""
     px = np.sqrt(np.abs(np.linalg.det(geometry.jacobians)))
     free = np.zeros((sweeps, 3))
     for sweep in range(sweeps):

@@ -34,7 +34,7 @@ LEAST_SIGMA_SHARE = 0.1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LocatedSweeps:
-    """Solved planes: `frames` (S,) and, per crossing, the weight it had.
+    """Located sweeps: their frames (S,), their light planes with covariance, and the weight (M,) of each crossing.
 
     `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
     `core.scan.network.adjustment.Network`; F = Q = 0 where not known. `judged`: what is wrong with the residuals.
@@ -82,14 +82,14 @@ class SweepPlanes:
 def number_fan_lines(
     pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
-    """Find the numbering of the fan's centrelines that the sweeps agree with best."""
+    """Find the line (from 0) of each of the fan's centrelines, in the numbering the sweeps agree with best."""
     return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan, progress)
 
 
 def choose_numbering(
     numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
-    """Choose the one of the `numberings` that the sweeps agree with best, unsure centrelines settled by them.
+    """Choose the numbering of the fan's centrelines that the sweeps agree with best; they settle unsure ones.
 
     Of those that they agree with alike the one counts that puts most centrelines on common faces; a centreline on which
     even these differ is left out.
@@ -114,7 +114,7 @@ def choose_numbering(
 
 
 def some_sweeps(crossings: CrossingTable) -> NDArray[np.bool_]:
-    """Mask (M,) of the crossings of NUMBERING_SWEEPS sweeps spread over the scan, with the fan or each other.
+    """Choose NUMBERING_SWEEPS sweeps spread over the scan: the mask (M,) of their crossings with the fan or each other.
 
     They tell of fan and camera what all do.
     """
@@ -162,7 +162,7 @@ def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, f
 
 
 def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:
-    """Select crossings whose fan centreline has a number, and give that number (−1 for crossings between sweeps)."""
+    """Drop crossings with an unnumbered line of the fan; also return the line of the others, −1 between sweeps."""
     numbers = np.array([*lines.line, UNASSIGNED], dtype=np.int64)
     line = np.where(crossings.with_fan, numbers[np.where(crossings.with_fan, crossings.piece_b, -1)], -1)
     keep = ~crossings.with_fan | (line != UNASSIGNED)
@@ -221,7 +221,7 @@ def planes_together(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> SweepPlanes:
-    """Locate all sweeps as `locate_together`, without their uncertainty, in half the time.
+    """Locate all sweeps in one adjustment without their uncertainty, in half the time of `locate_together`.
 
     Raises
     ------
@@ -241,14 +241,14 @@ def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
 
 
 def by_sweep(crossings: CrossingTable, frames: NDArray[np.int64]) -> CrossingTable:
-    """Renumber the crossings by the place of each frame among `frames` (S,), which are in order."""
+    """Replace the frame indices of crossings by their places among the ascending `frames` (S,)."""
     return crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
 
 
 def locate_each(
     crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
 ) -> LocatedSweeps:
-    """Locate every frame on its own from its crossings with the fan: Sun et al. 2023, §4.
+    """Locate every sweep on its own from its crossings with the fan, as Sun et al. 2023, §4, do.
 
     Raises
     ------

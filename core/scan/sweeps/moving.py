@@ -53,7 +53,7 @@ def read_out_of(
     row_time_us: float | None,
     progress: Progress = silent,
 ) -> ReadOut:
-    """Find how planes change with the rows; `line` (M,) is the fan's line of each crossing, −1 between sweeps.
+    """Find how sweeps' planes change from row to row of a picture; `line` (M,) is the fan's line, −1 between sweeps.
 
     `row_time_us` is 0 for a global shutter, None where nothing is stated: then the crossings are asked.
     """
@@ -94,7 +94,10 @@ def _minus_2_ln_l(equations: Adjustment, base: Solution) -> float:
 def hand_notes(
     sweeps: LocatedSweeps, crossings: CrossingTable, camera: Camera, read_out: ReadOut, *, stated: bool
 ) -> tuple[Message, ...]:
-    """Note the motion of the hand during the read-out, where it can show."""
+    """Make a note on how the hand moved during the read-out of a picture; () where all rows see the same plane.
+
+    `stated` is whether the time from row to row is.
+    """
     if not read_out.moves:
         return ()
     twist = _twist(sweeps, crossings, camera, read_out)

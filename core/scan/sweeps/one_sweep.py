@@ -35,9 +35,10 @@ _LEAST_WEIGHT = 1e-4
 
 @dataclass(frozen=True, eq=False, slots=True)
 class KnownPlanes:
-    """The planes that M crossings are with: `pis` (M, 3) in 1/mm, of which those with other sweeps are correlated.
+    """Planes, of the fan or of other sweeps, that one sweep meets at its M crossings: `pis` (M, 3) in 1/mm.
 
-    `sweep` (M,) says in which block of `covariance` (3K, 3K) each of them is; −1 for the fan, which counts as known.
+    Those of other sweeps are correlated: `sweep` (M,) says in which block of `covariance` (3K, 3K) each of them is; −1
+    for the fan, which counts as known.
     """
 
     pis: Array
@@ -61,7 +62,7 @@ class OneSweep:
 
 
 def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes) -> OneSweep:
-    """Locate the sweep that all `crossings` have as their a.
+    """Locate the sweep that is a in all `crossings`, by the `known` planes of the fan and of sweeps that it meets.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
 def judge_plane(
     pi: Array, covariance: Array, crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes
 ) -> OneSweep:
-    """Judge a plane `pi` (3,) of the network by the sweep's `crossings`: their weights and residuals."""
+    """Compute the weights and residuals of a sweep's `crossings` with its plane `pi` (3,) from the network."""
     equations = _Equations(crossings, geometry, known)
     residuals = equations.residuals(pi, equations.variances(pi))
     weights = tukey_weights(residuals, REJECT_AT)

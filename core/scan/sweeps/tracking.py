@@ -55,10 +55,10 @@ MOVEMENT_SAMPLES = 60
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TrackedSweep:
-    """A sweep, its crossings with the fan (b = −1) and with anchors before and after it (b their frame), and its plane.
+    """One sweep with its plane and its crossings, with the fan (b = −1) and with anchors (b their frame).
 
-    `used` (M,) are the rows of `crossings` that `plane` rests on; `left_out` the meetings that gave no crossing, each
-    with about where in pixels, and why.
+    Anchors are the sweeps before and after it that are kept to be crossed. `used` (M,) are the rows of `crossings` that
+    `plane` rests on; `left_out` the meetings that gave no crossing, each with about where in pixels, and why.
     """
 
     frame: int
@@ -69,14 +69,14 @@ class TrackedSweep:
     used: NDArray[np.int64]
 
     def without_crossings(self) -> TrackedSweep:
-        """Drop the crossings: the sweep and its plane alone take little memory."""
+        """Copy the sweep and its plane without the crossings, which take most memory."""
         none = np.zeros(0, np.int64)
         table, rays = self.crossings.select(none), self.geometry.select(none)
         return replace(self, crossings=table, geometry=rays, left_out=(), used=none)
 
 
 class SweepTracker:
-    """Tracker that locates sweeps one after another.
+    """Tracker that locates the sweeps of a scan one after another, as their frames come.
 
     `lines` are the numbers of the fan's centrelines as far as they are settled; given at first, they stay.
     """
@@ -106,11 +106,11 @@ class SweepTracker:
 
     @property
     def is_due(self) -> bool:
-        """Whether it is time to adjust the anchors again."""
+        """Whether it is time to adjust the anchors, the sweeps that others are crossed with, again."""
         return len(self._sweeps) >= self._due and len(self._anchors) >= FIRST_ADJUSTMENT
 
     def add(self, frame: int, pieces: Sequence[Centreline]) -> TrackedSweep:
-        """Locate the sweep of `frame`."""
+        """Locate the sweep whose centrelines in `frame` are `pieces`, and keep it."""
         window = self._window
         lines = shaded(pieces, window)
         search = search_crossings(lines.stack, self._fixed.stack, window.half_length_px, window.min_angle)
@@ -132,7 +132,7 @@ class SweepTracker:
         return sweep
 
     def adjust(self) -> bool:
-        """Adjust the anchors as a network; True if all sweeps can be located anew by them."""
+        """Adjust the anchors, the sweeps others are crossed with; True if all sweeps can be located anew by them."""
         self._due = round(GROWTH * len(self._sweeps))
         table = self._among_anchors()
         if table is None or not np.any(table.with_fan):
@@ -151,11 +151,11 @@ class SweepTracker:
         return True
 
     def is_outdated(self, frame: int) -> bool:
-        """Whether the sweep of `frame` is located by an earlier adjustment."""
+        """Whether the sweep of `frame` is still located by an adjustment before the latest."""
         return frame in self._outdated
 
     def located_anew(self, frame: int) -> TrackedSweep:
-        """Locate the sweep of `frame` by the latest adjustment."""
+        """Locate the sweep of `frame` by the latest adjustment, unless that has been done, and return it."""
         if frame in self._outdated:
             self._outdated.discard(frame)
             self._sweeps[frame] = self._located(self._sweeps[frame])
@@ -230,9 +230,9 @@ class SweepTracker:
 
 
 def movement_px(now: Sequence[Centreline], before: Sequence[Centreline]) -> float:
-    """Compute the median distance in px, across the stripe, of the centrelines `now` from those `before`.
+    """Compute how far in px, across the stripe, the centrelines `now` lie from those of `before`; NaN without any.
 
-    NaN without any.
+    The median over their points.
     """
     if not now or not before:
         return float("nan")
