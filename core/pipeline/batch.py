@@ -43,7 +43,7 @@ Measure = Callable[..., SetResult]
 
 
 def ignore_update(told: SetUpdate) -> None:
-    """Ignore an update: the default watcher."""
+    """Do nothing with an update on a set: the watcher of a batch that none is given for."""
 
 
 def run_batch(
@@ -55,7 +55,7 @@ def run_batch(
     watch: Watch = ignore_update,
     measure: Measure | None = None,
 ) -> tuple[SetResult, ...]:
-    """Measure recording sets side by side; one that cannot be measured does not keep the others from it.
+    """Measure recording sets side by side in `executor`; one that cannot be measured has an error, the others go on.
 
     Parameters
     ----------
@@ -110,13 +110,13 @@ def measure_sets(
     progress: Progress = silent,
     watch: Watch = ignore_update,
 ) -> tuple[SetResult, ...]:
-    """Measure sets as `run_batch` does, in threads of this process: whatever ends it ends them, too."""
+    """Measure recording sets side by side as `run_batch`, in threads of this process, which end with it."""
     with executor_of(THREADS) as threads:
         return run_batch(sets, out, threads, options, progress, watch)
 
 
 def sets_in(folder: Path) -> tuple[Path, ...]:
-    """List the recording sets in a folder by name; the folder itself if it is one.
+    """List the recording sets in `folder`, sorted by name; `folder` alone if it is itself a set.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def sets_in(folder: Path) -> tuple[Path, ...]:
 
 
 def measure_set(folder: Path, out: Path, options: Options, stop: Path, progress: Progress = silent) -> SetResult:
-    """Measure one set, in whatever process this is; `stop` is a file that ends it with Cancelled when it appears."""
+    """Measure one recording set into `out`; raise Cancelled as soon as a file `stop` exists."""
     began = time.perf_counter()
     try:
         measured = run(folder, out, options, _stopped_by(stop, progress))

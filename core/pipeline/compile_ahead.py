@@ -24,7 +24,7 @@ _EXPECTED_FUNCTIONS = 240
 
 
 def compile_ahead(progress: Progress = silent) -> None:
-    """Compile all loops that a measurement needs and that are not compiled yet.
+    """Compile in other processes all loops that a measurement needs and that are not compiled yet.
 
     What cannot be made ready here is compiled where it is needed.
     """

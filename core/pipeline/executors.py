@@ -101,7 +101,7 @@ _to_end = threading.Event()
 
 
 def is_to_end() -> bool:
-    """Whether this process measures for another one and was asked to end, so that its measurement is cancelled."""
+    """Whether this process measures a set for another process, which has asked for it to be cancelled."""
     return _to_end.is_set()
 
 

@@ -40,7 +40,7 @@ from core.settings.options import Options
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RunResult:
-    """Results of a whole run, and where its files are.
+    """Results of measuring a whole recording set, and the folder of their files.
 
     `gauge` is None where no thickness was asked for and the part has no two parallel faces. `results` are all that are
     in the folder, with the verdict on the part. `files` holds what was
@@ -65,7 +65,7 @@ def run(
     progress: Progress = silent,
     beside: SecondProcess | None = None,
 ) -> RunResult:
-    """Measure a recording set; every step's results are written as soon as they are there.
+    """Measure a recording set from its pictures to its report; the files of each step are written once it is done.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ SET_COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class SetResult:
-    """Result of one recording set in a batch.
+    """Result of measuring one recording set of a batch, or the error that it ended with.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class SetProgress:
 
 
 class SetCells(NamedTuple):
-    """Cells of a row of a table of sets; "" for missing ones."""
+    """Texts for the row of one recording set in a table; "" for what was not measured."""
 
     thickness: str
     """In mm, without the unit, as U."""
@@ -74,7 +74,7 @@ class SetCells(NamedTuple):
 
 
 def set_cells(result: SetResult, words: Words) -> SetCells:
-    """Make the cells of a set in a table."""
+    """Make the texts for the row of one recording set in a table, in the language of `words`."""
     seconds = words("{seconds:.1f} s", seconds=result.seconds)
     if result.error:
         return SetCells("", "", "", "", "", seconds)

@@ -20,7 +20,7 @@ from core.pipeline.live.events import CameraDetail
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundView:
-    """View found in one frame: the view and the blur of its edges, or the reason why there is none.
+    """Result of looking for the camera target in one frame: the view and its edge blur, or the reason for none.
 
     `counted` are the columns and rows of a board of another size that is seen instead.
     """
@@ -33,7 +33,7 @@ class FoundView:
 
 
 def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
-    """Find `target` in a frame."""
+    """Find the corners of `target` in a frame and the blur of its edges, or the reason why it is not seen."""
     try:
         view = detect(target, frame.picture, "", camera, thorough=False)
     except InputError as error:
@@ -43,7 +43,7 @@ def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
 
 
 class LiveCamera:
-    """Camera step of a live recording."""
+    """Step of a live recording in which views of the camera target are taken, to calibrate the camera."""
 
     def __init__(self, context: LiveContext) -> None:
         self._context, self._target = context, context.request.rig.camera_target
@@ -57,15 +57,15 @@ class LiveCamera:
 
     @property
     def show_with_findings(self) -> bool:
-        """Whether the target is seen: its corners belong to the picture they were found in."""
+        """Whether the target is seen; then the frame is shown with the corners that were found in it."""
         return self._look is not None and self._look.view is not None
 
     def begin(self) -> None:
-        """Switch the lasers off."""
+        """Switch the lasers off, as views of the target are taken without their light."""
         self._context.switch(Lasers(fan=False, hand=False))
 
     def frame(self, frame: Frame) -> None:
-        """Look for the target in a frame, if the last look is over."""
+        """Start to look for the target in a frame, unless an earlier frame is still being looked at."""
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._context.request.camera)
@@ -74,7 +74,7 @@ class LiveCamera:
         self._context.worker.start(find_view, frame, self._target, self._context.request.camera)
 
     def poll(self) -> Frame | None:
-        """Judge the view that was found last, and take it if it is good."""
+        """Judge the view found last and take it if it is good; return its frame, None if no search has ended."""
         look = self._context.worker.take()
         if not isinstance(look, FoundView) or self._judge is None:
             return None
@@ -93,7 +93,7 @@ class LiveCamera:
         return look.frame
 
     def detail(self, shown: Frame) -> CameraDetail | None:
-        """Return the view found last, with its corners only for their own picture."""
+        """Return what was found in the last frame searched, with corners only if that is `shown`; None before any."""
         if self._look is None or self._judge is None:
             return None
         view = self._look.view
@@ -110,10 +110,10 @@ class LiveCamera:
         )
 
     def rest(self) -> None:
-        """Do nothing: no work is waiting."""
+        """Do nothing: no work is put off in this step until a picture has been shown."""
 
     def handle(self, command: Command) -> None:
-        """Handle the commands Capture, Auto, Discard and LookFor."""
+        """Follow the commands Capture, Auto, Discard and LookFor; ignore all others."""
         match command:
             case Capture():
                 self._capture = True
@@ -127,7 +127,7 @@ class LiveCamera:
                 self._context.recorded -= 1
 
     def finish(self) -> None:
-        """Do nothing: all pictures are on the disk already."""
+        """Do nothing: all views taken are on the disk already."""
 
     def _take(self, frame: Frame, view: TargetView, judge: CaptureJudge) -> None:
         name = f"view{self._number:02d}"
@@ -141,10 +141,10 @@ class LiveCamera:
 
 
 def nothing_taken(why: Message) -> Message:
-    """Make the notice that Capture was pressed and no view was taken."""
+    """Make the notice that Capture was pressed and no view or pose was taken, because of `why`."""
     return Message("live.nothing_taken", "Nothing was taken. {why}", why=why)
 
 
 def named(view: TargetView, name: str) -> TargetView:
-    """Rename a view."""
+    """Copy a view of the camera target under another name."""
     return TargetView(view.points, view.uv, view.sigma, name)

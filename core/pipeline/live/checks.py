@@ -25,7 +25,7 @@ CHECK_EVERY_S = 1.0
 
 
 class ScanChecks:
-    """Checks and advice of a scan, sent to the window whenever they change."""
+    """Checks of a live scan and advice on exposure, sent to the window whenever their results change."""
 
     def __init__(self, context: LiveContext, previewer: ScanPreviewer) -> None:
         self._context, self._previewer = context, previewer
@@ -40,16 +40,16 @@ class ScanChecks:
 
     @property
     def are_due(self) -> bool:
-        """Whether it is time to check the reference again."""
+        """Whether it is time to compare a picture with the reference again."""
         return time.monotonic() - self._looked_s >= CHECK_EVERY_S
 
     def begin(self, image_size: tuple[int, int]) -> None:
-        """Start the checks with the first picture, of (width, height)."""
+        """Make the first checks, when the first picture, of `image_size` (width, height), has come."""
         self._image_size = image_size
         self._tell(None, None)
 
     def accepted(self) -> None:
-        """Record that a reference has been taken."""
+        """Make the checks that a new reference allows, such as that of the section of the fan's stripes."""
         request = self._context.request
         camera, fan = request.camera, request.fan
         if camera is not None and fan is not None and not _is_readjusted(request):
@@ -58,19 +58,19 @@ class ScanChecks:
         self.reference()
 
     def reference(self, departed: Message | None = None) -> None:
-        """Record whether the latest picture agrees with the reference, or how it has `departed`."""
+        """Make the checks anew, given why the latest picture has `departed` from the reference; None: it agrees."""
         self._looked_s = time.monotonic()
         self._tell(self._previewer.fan_lines, departed)
 
     def stripes(self, stripes: Sequence[Centreline]) -> None:
-        """Record the stripes of the hand-held laser."""
+        """Give new advice on the exposure, if it has changed with these stripes of the hand-held laser."""
         context = self._context
         advice = self._adviser.watch(stripes, self._previewer.full_scale, context.settings, context.capabilities)
         if advice is not None:
             context.emit(advice)
 
     def configured(self) -> None:
-        """Record that the settings of the source have changed."""
+        """Forget the exposures seen so far, as the settings of the source have changed."""
         self._adviser.forget()
 
     def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: Message | None) -> None:
@@ -98,7 +98,7 @@ class ScanChecks:
 
 
 def planes_acquisition(request: LiveRequest) -> Acquisition | None:
-    """Find by which camera and when the fan's poses were recorded; None where that is not known."""
+    """Read by which camera and when the poses of the fan's calibration were recorded; None if not known."""
     if request.kept_planes is None or request.camera is None:
         return None
     try:
@@ -108,7 +108,7 @@ def planes_acquisition(request: LiveRequest) -> Acquisition | None:
 
 
 def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]:
-    """Read the fan's stripes in each pose of its calibration; none if they are not known any more."""
+    """Read the centrelines of the fan in each pose of its calibration; () if they are not stored any more."""
     if request.kept_planes is None:
         return ()
     try:

@@ -17,7 +17,7 @@ from core.settings.options import Options
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveRequest:
-    """Request for a live recording.
+    """Request for a live recording: what to record, from which source, into which folder.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class LiveRequest:
 
 @dataclass(frozen=True, slots=True)
 class Capture:
-    """Command to take this view or pose now, whatever its quality."""
+    """Command to take a view or pose from the next frame searched, whatever its quality."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +90,7 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class TakeReference:
-    """Command to take the reference: the hand-held laser is off, the fan on. Said again while waiting: take it as
-    it is.
-    """
+    """Command to take the reference, with the fan alone on; given again while it is waited for: take it as it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +129,7 @@ class Discard:
 
 @dataclass(frozen=True, slots=True)
 class LookFor:
-    """Command to look for another camera target from now on: it was stated wrongly."""
+    """Command to look for `target` from now on, as the camera target was stated wrongly."""
 
     target: Target
 

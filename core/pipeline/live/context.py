@@ -27,32 +27,35 @@ class LiveStep(Protocol):
 
     @property
     def show_with_findings(self) -> bool:
-        """Whether a frame is shown together with what was found in it, even after a later frame has come."""
+        """Whether a frame is shown together with what was found in it, even after later frames have come."""
 
     def begin(self) -> None:
-        """Start the step: the source is open."""
+        """Start the step, once the source is open."""
 
     def frame(self, frame: Frame) -> None:
         """Record a frame if it is to be recorded, and have it analysed if there is time."""
 
     def poll(self) -> Frame | None:
-        """Take the result of a finished analysis, and return its frame if `detail` has changed."""
+        """Take the result of an analysis that has ended; return its frame if `detail` has changed, else None."""
 
     def detail(self, shown: Frame) -> Detail | None:
-        """Return what is found so far, to be shown with the picture of this frame; called only when it is shown."""
+        """Return what has been found so far, to be shown with the frame `shown`; None before anything is.
+
+        Called only when it is shown.
+        """
 
     def rest(self) -> None:
-        """Do some of the waiting work, if there is time, after a picture has been shown."""
+        """Start a piece of work that was put off until a picture has been shown, if there is any."""
 
     def handle(self, command: Command) -> None:
-        """Handle a command that is not for the loop itself."""
+        """Follow a command that concerns this step, such as Capture or Pause; Stop and Switch do not come here."""
 
     def finish(self) -> None:
-        """Write everything to the disk: no more frames come."""
+        """Write all that is recorded to the disk, as no more frames come."""
 
 
 class Worker:
-    """Thread that does one job at a time; jobs that come while it is busy are refused."""
+    """Thread that does one job at a time; a job that comes while it is busy is refused."""
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="live")
@@ -60,18 +63,18 @@ class Worker:
 
     @property
     def busy(self) -> bool:
-        """Whether a job runs, or its result has not been taken."""
+        """Whether a job is running, or has ended and its result has not been taken."""
         return self._job is not None
 
     def start(self, job: Callable[..., Any], *args: Any) -> bool:
-        """Start `job(*args)`; False if the worker is busy."""
+        """Start `job(*args)` in the thread; return False, without starting it, if the worker is busy."""
         if self._job is not None:
             return False
         self._job = self._pool.submit(job, *args)
         return True
 
     def take(self, timeout_s: float = 0.0) -> Any | None:
-        """Return the result of a finished job, once, else None; raises what the job raised."""
+        """Return the result of a job that has ended, once; None if there is none by `timeout_s`; raise its error."""
         job = self._job
         if job is None or not (job.done() or timeout_s > 0):
             return None
@@ -86,12 +89,12 @@ class Worker:
                 self._job = None
 
     def close(self) -> None:
-        """Refuse further jobs; one that runs ends by itself and is not waited for."""
+        """Refuse further jobs; one that is running ends by itself and is not waited for."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
 class LiveContext:
-    """Source, events and files that every live step works with.
+    """Source, events and files of a live recording, which each of its steps works with.
 
     `recorded` counts what is on the disk, `lost` frames the disk was too slow for. `settings` is what the source has
     been told, `capabilities` what it can be told, `rate_hz` how many frames a second have come of late.
@@ -109,7 +112,7 @@ class LiveContext:
         self._told: Message | None = None
 
     def close(self) -> None:
-        """Close the writers: no more pictures come."""
+        """Close the writers of pictures, as no more pictures come."""
         self.worker.close()
         self._log.close()
 
@@ -119,7 +122,7 @@ class LiveContext:
         return self.source.lasers(lasers)
 
     def release_scene(self, frame: Frame) -> None:
-        """Tell the source that a frame's content was taken, or is useless, so that it need not wait any more."""
+        """Tell a source that waits for it that the scene in `frame` was taken or is useless, so that it may go on."""
         if isinstance(self.source, WaitingSource):
             self.source.go_on(frame)
 
@@ -129,24 +132,24 @@ class LiveContext:
         self.emit(LiveAsk(sentence, button, answer))
 
     def answered(self) -> None:
-        """Withdraw the request to the user: it has been followed."""
+        """Withdraw the request that the user was asked to follow, if there is one."""
         if self._asking:
             self._asking = False
             self.emit(LiveAnswered())
 
     def notice(self, sentence: Message, *, refused: bool = False) -> None:
-        """Show a sentence, or that a picture was `refused` and why, but never the same one twice in a row."""
+        """Show a sentence to the user unless it was the last one shown; `refused`: it says why nothing was taken."""
         if sentence != self._told:
             self._told = sentence
             self.emit(LiveNotice(sentence, refused))
 
     @property
     def camera(self) -> str:
-        """Name of the open camera in logs; "" for a replay, which is none."""
+        """Name of the open camera for the logs of recordings; "" for a replay, which has no camera."""
         return camera_name(self.request.source, self.source)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None) -> None:
-        """Write a picture by this name (without ending) and, in the log, when its frame was taken.
+        """Write a picture under `name` (without ending) and, if a `frame` is given, when it was taken into the log.
 
         Raises
         ------
@@ -159,12 +162,12 @@ class LiveContext:
             self._log.add(logged(path.name, frame, frame.dropped, self.camera))
 
     def took(self, name: str, picture: Picture) -> None:
-        """Report that a view, pose or reference is on the disk."""
+        """Report to the window that the view, pose or reference `name` is on the disk, with a thumbnail."""
         self._told = None
         self.emit(LiveTaken(name, Display.of(self.request.rig, THUMBNAIL_PX).reduced(picture)[0]))
 
     def put_aside(self, *names: str) -> bool:
-        """Move pictures (names without ending) out of the recording; False if there is none of them."""
+        """Move pictures (names without ending) out of the recording, to `discarded`; False if none of them exists."""
         there = [path for name in names if (path := self.request.folder / f"{name}.png").exists()]
         if there:
             aside = self.request.folder / DISCARDED
@@ -175,5 +178,5 @@ class LiveContext:
 
 
 def as_sentence(what: Message) -> Message:
-    """Make a sentence of the message of an InputError."""
+    """Make a sentence of the `what` of an InputError: with a capital letter, ended by a full stop."""
     return Message("live.reason", "{reason:capital}.", reason=what)

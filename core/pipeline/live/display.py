@@ -21,7 +21,7 @@ _FEWEST_BITS = 10  # of cameras that give 16-bit pictures
 
 
 class Display:
-    """Reducer of the pictures of one source by a whole factor to at most `width_px` across.
+    """Converter of the pictures of one source to 8 bit, reduced by a whole factor to at most `width_px` across.
 
     16-bit pictures of cameras with fewer bits are brightened by as many bits as none of them has used yet. Raw ones,
     of a `mosaic`, are shown in the `channel` that is looked at, between its sites their means: as they come they are a
@@ -34,11 +34,11 @@ class Display:
 
     @classmethod
     def of(cls, rig: Rig, width_px: int) -> Self:
-        """Make the reducer for the live pictures of a rig."""
+        """Make the converter for the live pictures of a rig, with the mosaic and the channel that it states."""
         return cls(width_px, rig.mosaic, rig.live_channel)
 
     def reduced(self, picture: Picture) -> Reduced:
-        """Reduce a picture to (h, w), and return it with the factor."""
+        """Reduce a picture (H, W) to 8 bit (h, w) for display; return it with the whole factor H / h."""
         if self._mosaic is not None:
             picture = to_grey(colours_of(picture, self._mosaic), self._channel)
         height, width = picture.shape

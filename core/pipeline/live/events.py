@@ -20,7 +20,7 @@ from core.scan.preview.shown import FramePreview, PreviewCloud
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CameraDetail:
-    """Camera target in the live picture, and what is missing from the views.
+    """Corners of the camera target in the live picture, and what the views taken so far still lack.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ ScanStage = Literal["reference", "ready", "scanning", "paused"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanDetail:
-    """Preview of the scan so far.
+    """State of a live scan for display: the last preview, new points, covered cells and counts of frames.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ Detail = CameraDetail | PlanesDetail | ScanDetail
 
 @dataclass(frozen=True, slots=True)
 class LiveStarted:
-    """Event that the first picture has come: the source's name, the full (width, height), the settings it has."""
+    """Event that the first picture has come: the source's name, the picture's (width, height), what can be set."""
 
     name: str
     image_size: tuple[int, int]
@@ -169,7 +169,7 @@ class LiveTaken:
 
 @dataclass(frozen=True, slots=True)
 class LiveAsk:
-    """Event that the user must do something and then press a button of this name (a label), which sends `answer`.
+    """Event that the user must do what `sentence` says, then press `button` (a label), which sends `answer`.
 
     It stands until LiveAnswered, or until another one takes its place.
     """
@@ -181,12 +181,12 @@ class LiveAsk:
 
 @dataclass(frozen=True, slots=True)
 class LiveAnswered:
-    """Event that the request of LiveAsk has been followed."""
+    """Event that the user has followed the request of the last LiveAsk."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiveNotice:
-    """Event with a sentence to show; nothing stops for it. Or that a picture was `refused`, and why."""
+    """Event with a sentence to show, for which nothing stops; `refused`: it says why a picture was not taken."""
 
     sentence: Message
     refused: bool = False
@@ -194,7 +194,7 @@ class LiveNotice:
 
 @dataclass(frozen=True, slots=True)
 class LiveAdvice:
-    """Event with advice on the exposure of the stripes; empty where all is well.
+    """Event with advice on the exposure of the stripes; without a sentence where the exposure is good.
 
     `settings` is what to tell the source; None if a person must find out, because what is set now is not known.
     """

@@ -18,20 +18,20 @@ LOOKED_AT = 9
 
 
 class ExposureAdviser:
-    """Adviser on the exposure of the stripes of a live source."""
+    """Adviser on the exposure of a live source, by the stripes in its latest pictures."""
 
     def __init__(self) -> None:
         self._seen: deque[Exposure] = deque(maxlen=LOOKED_AT)
         self._told = LiveAdvice()
 
     def forget(self) -> None:
-        """Forget the pictures so far: the settings of the source have changed."""
+        """Forget the exposures of the pictures so far, as the settings of the source have changed."""
         self._seen.clear()
 
     def watch(
         self, stripes: Sequence[Centreline], full_scale: float, told: SourceSettings, can: Capabilities
     ) -> LiveAdvice | None:
-        """Return the advice after one more picture; None if it has not changed.
+        """Return the advice on exposure after one more picture; None if it is still that given last.
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class ExposureAdviser:
 
 
 def advised(exposure: Exposure, told: SourceSettings, can: Capabilities) -> LiveAdvice:
-    """Make one sentence of advice and the settings it names, exposure time before gain; none where all is well."""
+    """Make advice on an `exposure`: one sentence and new settings, exposure time before gain; empty if it is good."""
     if exposure.is_good:
         return LiveAdvice()
     why = _why(exposure)

@@ -55,7 +55,7 @@ class _Pending:
 
 
 class LivePlanes:
-    """Planes step of a live recording, also of an interim check."""
+    """Step of a live recording in which poses of the plane target are taken, to calibrate or check the fan."""
 
     def __init__(self, context: LiveContext) -> None:
         self._context, request = context, context.request
@@ -77,11 +77,11 @@ class LivePlanes:
 
     @property
     def show_with_findings(self) -> bool:
-        """Whether the target is seen: its corners and the stripes belong to the picture they were found in."""
+        """Whether the target is seen; then the frame is shown with corners and stripes found in it."""
         return self._look is not None and self._look.pose.view is not None
 
     def begin(self) -> None:
-        """Switch the fan on; an unfinished pose is dropped when the source was unplugged."""
+        """Switch the fan on, and drop a pose left unfinished when the source was unplugged."""
         self._context.answered()
         self._pending, self._stage = None, "looking"
         self._switches = self._context.switch(_FAN_ON)
@@ -91,7 +91,7 @@ class LivePlanes:
             )
 
     def frame(self, frame: Frame) -> None:
-        """Look for the pose in a frame, or take the picture with the fan off."""
+        """Start to look for a pose in a frame, or use the frame as the picture with the fan on or off that is due."""
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
@@ -107,7 +107,7 @@ class LivePlanes:
             self._second_picture(self._pending, frame)
 
     def poll(self) -> Frame | None:
-        """Judge the pose that was found last, and take it if it is good."""
+        """Judge the pose found last and take it if it is good; return its frame, None if no search has ended."""
         result = self._context.worker.take()
         if isinstance(result, PoseFeatures) and self._pending is not None and self._judge is not None:
             self._finish_pair(self._pending, result, self._judge)
@@ -117,7 +117,10 @@ class LivePlanes:
         return None
 
     def detail(self, shown: Frame) -> PlanesDetail | None:
-        """Return what was found last, with corners and stripes only for their own picture."""
+        """Return what was found in the last frame searched, with corners and stripes only if that is `shown`.
+
+        None before any.
+        """
         look = self._look
         if look is None or self._judge is None:
             return None
@@ -136,10 +139,10 @@ class LivePlanes:
         )
 
     def rest(self) -> None:
-        """Do nothing: no work is waiting."""
+        """Do nothing: no work is put off in this step until a picture has been shown."""
 
     def handle(self, command: Command) -> None:
-        """Handle the commands Capture, Auto and Discard, and a change of the source's settings."""
+        """Follow the commands Capture, Auto and Discard, and forget exposures on Configure; ignore all others."""
         match command:
             case Configure():
                 self._adviser.forget()
@@ -156,7 +159,7 @@ class LivePlanes:
                 self._context.recorded -= 1
 
     def finish(self) -> None:
-        """Do nothing: all pictures are on the disk already."""
+        """Do nothing: all poses taken are on the disk already."""
 
     def _judged(self, look: FoundPose, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose

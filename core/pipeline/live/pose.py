@@ -32,7 +32,7 @@ _ROOM, _LEAST_ROOM_PX = 0.6, 60.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundPose:
-    """Pose found in one frame with the fan on: its features, edge blur, and for each stripe its likely line."""
+    """Pose found in one frame with the fan on: its features, edge blur, and the likely line of each stripe."""
 
     frame: Frame
     pose: PoseFeatures
@@ -49,7 +49,7 @@ def find_pose(
     lines: int,
     around: Array | None = None,
 ) -> FoundPose:
-    """Find the target and the stripes on it in one frame; first `around` (N, 2) px, where it was seen last."""
+    """Find the plane target and the stripes on it in one frame, looking first `around` (N, 2) px, where it was last."""
     pose = None if around is None else _pose_around(around, frame.picture, target, camera, settings)
     if pose is None:
         pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
@@ -94,7 +94,7 @@ def _part_of(camera: Camera, size: tuple[int, int], origin: Array) -> Camera:
 
 
 def is_lit(picture: Picture, lit: Picture, stripes: Sequence[Centreline]) -> bool:
-    """Whether a picture (H, W) shows the stripes of a `lit` one of the same scene at least half as bright."""
+    """Whether a picture (H, W) shows `stripes` at least half as bright as a picture `lit` (H, W) of the scene."""
     return _height(picture, stripes) > _STILL_LIT * _height(lit, stripes)
 
 
@@ -118,7 +118,7 @@ def measure_pair(
     settings: StripeSettings | None,
     margin_mm: float | None,
 ) -> PoseFeatures:
-    """Measure a pose as its calibration will."""
+    """Measure a pose from its pictures with the fan `on` and `off` (None: not taken), as its calibration will."""
     return measure_plane_pose(name, on, off, target, camera, settings, margin_mm)
 
 
@@ -154,7 +154,7 @@ def _numbered_stripes(
 
 
 def settings_of(pose: PoseFeatures) -> StripeSettings:
-    """Return width and contrast of the stripes found, so that they need not be searched in each picture."""
+    """Estimate width and contrast of a pose's stripes, so that later pictures need not be searched for them."""
     width = float(np.median(np.concatenate([piece.width for piece in pose.centrelines])))
     strength = float(np.quantile(np.concatenate([piece.strength for piece in pose.centrelines]), 0.2))
     return StripeSettings(WIDTH_IN_SIGMA * width, strength)

@@ -27,7 +27,7 @@ SETTINGS_FROM = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PreviewedFrame:
-    """Frame with its preview."""
+    """Frame of a live scan with its preview."""
 
     frame: Frame
     preview: FramePreview
@@ -35,14 +35,14 @@ class PreviewedFrame:
 
 @dataclass(frozen=True, slots=True)
 class PreviewFailed:
-    """Failure of the preview, with its reason; the recording goes on."""
+    """Failure of the preview of a live scan, with its reason; the recording goes on."""
 
     sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceMismatch:
-    """Reason why a picture without the hand-held laser does not agree with the reference; None if it does."""
+    """Reason why a picture without the hand-held laser disagrees with the reference; None if it agrees."""
 
     reason: Message | None
 
@@ -64,7 +64,10 @@ class ScanPreviewer:
 
     @property
     def fan_lines(self) -> tuple[tuple[Centreline, ...], ...]:
-        """The fan's centrelines by line number, as far as settled; without calibration all in one."""
+        """The reference's centrelines for each line of the fan, as far as settled; uncalibrated, all in one.
+
+        () before there is a reference.
+        """
         if self._preview is not None:
             return self._preview.fan_lines
         return () if self._reference is None else (self._reference.fan,)
@@ -75,18 +78,18 @@ class ScanPreviewer:
         return 255.0 if self._reference is None else self._reference.full_scale
 
     def departed(self, picture: Picture) -> ReferenceMismatch:
-        """Check whether a picture still agrees with the reference."""
+        """Check whether a picture still agrees with the reference; the reason is None if it does, or without one."""
         if self._reference is None:
             return ReferenceMismatch(None)
         seen = FrameReader(self._reference, None)((0, ("", picture)))
         return ReferenceMismatch(None if seen.exclusion is Exclusion.WITHOUT_STRIPE else seen.reason)
 
     def fan_cloud(self) -> PreviewCloud:
-        """Return the fan's own points."""
+        """Collect all points previewed so far, only the fan's after `read_reference`; none if uncalibrated."""
         return PreviewCloud.joined([]) if self._preview is None else self._preview.cloud()
 
     def read_reference(self, picture: Picture) -> Picture:
-        """Prepare the preview for this reference, and return it.
+        """Extract the fan's lines from the reference (H, W), start the preview with them, and return the picture.
 
         Raises
         ------
@@ -99,7 +102,7 @@ class ScanPreviewer:
         return picture
 
     def look(self, index: int, name: str, frame: Frame) -> PreviewedFrame | PreviewFailed | None:
-        """Preview frame number `index` of the recording."""
+        """Preview the frame of number `index` in the recording; None before a reference or after a failure."""
         if self._reference is None or self._failed:
             return None
         try:
@@ -109,12 +112,12 @@ class ScanPreviewer:
 
     @property
     def has_more(self) -> bool:
-        """Whether there is work that can wait until a frame is shown."""
+        """Whether the previewer has work for `go_on`, which is put off until a frame has been shown."""
         waits = self._to_learn_from is not None or (self._preview is not None and self._preview.has_more)
         return waits and not self._failed
 
     def go_on(self) -> PreviewFailed | None:
-        """Do a part of the work that can wait until a frame is shown."""
+        """Learn the stripe's look from a frame, or locate some earlier sweeps again; return a failure, else None."""
         picture, self._to_learn_from = self._to_learn_from, None
         try:
             if self._reference is not None and picture is not None:

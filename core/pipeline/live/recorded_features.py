@@ -33,7 +33,7 @@ LOOK_EVERY_S = 0.1
 
 
 class RecordedFeatures:
-    """Looks at the frames of a recording as they come.
+    """Extractor that extracts features of a scan in a thread while it is recorded, and stores them with it.
 
     Parameters
     ----------
@@ -57,27 +57,27 @@ class RecordedFeatures:
 
     @property
     def unseen(self) -> int:
-        """How many frames have not been looked at yet."""
+        """Number of frames given that have not been looked at yet; 0 if the thread does not run."""
         return len(self._names) - self._seen if self._thread.is_alive() else 0
 
     def add(self, name: str) -> None:
-        """A frame, by its name without ending, was given to be written."""
+        """Note that the frame `name` (without ending) is being written; the thread starts after LOOK_AHEAD of them."""
         self._names.append(name)
         if len(self._names) == LOOK_AHEAD:
             self._thread.start()
 
     def finish(self) -> None:
-        """All frames are on the disk: no more will come."""
+        """Note that all frames are on the disk and no more will come."""
         self._complete.set()
 
     def wait(self, seconds: float) -> bool:
-        """Wait until the features are kept, or there will be none; whether that is so within this time."""
+        """Wait at most `seconds` until the features are stored or given up; return whether that is so."""
         if self._thread.ident is not None:
             self._thread.join(seconds)
         return not self._thread.is_alive()
 
     def give_up(self) -> None:
-        """End the thread without features."""
+        """End the thread without storing features."""
         self._given_up.set()
         self._complete.set()
         self.wait(GIVEN_UP_S)

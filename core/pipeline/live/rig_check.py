@@ -10,7 +10,7 @@ from core.scan.preview.preflight import Check
 
 
 def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | None = None) -> Check:
-    """Make the check whether camera and laser were checked on the day of `now`, which has a time zone.
+    """Make the check of whether camera and laser were checked on the day of `now`, a time with its zone.
 
     Planes calibrated in this sitting, so many hours ago, are as good as a check.
     """

@@ -66,21 +66,21 @@ class FrameStore(Protocol):
 
     @property
     def dropped(self) -> int:
-        """Number of frames that were refused or given up."""
+        """Number of frames that were refused because the disk was too slow, or given up."""
 
     @property
     def waiting(self) -> int:
-        """Number of frames accepted but not yet on the disk."""
+        """Number of frames accepted but not yet written to the disk."""
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
         """Queue a picture, that of a `frame` of the `camera`, to be written; False if the disk is too slow."""
 
     def close(self) -> None:
-        """Wait until all are on the disk."""
+        """Wait until all accepted frames are on the disk."""
 
 
 class LiveScan:
-    """Scan step of a live recording."""
+    """Step of a live recording in which the reference and then the frames of a scan are recorded and previewed."""
 
     def __init__(self, context: LiveContext, store: FrameStore) -> None:
         self._context, self._store, request = context, store, context.request
@@ -102,11 +102,11 @@ class LiveScan:
 
     @property
     def show_with_findings(self) -> bool:
-        """Whether it is scanning: a stripe drawn beside its light would look wrong."""
+        """Whether it is scanning; then the frame is shown with the stripe that was found in it."""
         return self._stage == "scanning"
 
     def begin(self) -> None:
-        """Switch the lasers as they must be now, and take the reference if there is none yet."""
+        """Switch the lasers as the scan needs them now; take the reference, or ask for it, if there is none."""
         self._self_switching = self._context.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
         self._before = None
         if self._stage != "reference":
@@ -132,7 +132,7 @@ class LiveScan:
             self._record(frame)
 
     def poll(self) -> Frame | None:
-        """Take the result of a finished look at the reference or a frame."""
+        """Take the result of previewing a frame or reading the reference; return the frame previewed, else None."""
         try:
             result = self._context.worker.take()
         except InputError as error:  # the reference shows no fan
@@ -153,12 +153,12 @@ class LiveScan:
         return None
 
     def rest(self) -> None:
-        """Do a little of the waiting work after each look: not more, so that the next frame finds the worker free."""
+        """Start one piece of the preview's postponed work (`ScanPreviewer.go_on`), at most once after each frame."""
         if self._looked and self._previewer.has_more and self._context.worker.start(self._previewer.go_on):
             self._looked = False
 
     def detail(self, shown: Frame) -> ScanDetail | None:
-        """Return the last preview, and all points since the last call."""
+        """Return the state of the scan with the last preview and all points new since the last call; None at first."""
         if self._coverage is None:
             return None
         points, renewed = PreviewCloud.joined(self._new), self._renewed
@@ -176,7 +176,7 @@ class LiveScan:
         )
 
     def handle(self, command: Command) -> None:
-        """Handle TakeReference, Pause, Resume and Mark, and a change of the source's settings."""
+        """Follow the commands TakeReference, Pause, Resume, Mark and Configure; ignore all others."""
         match command:
             case Configure():
                 self._checks.configured()

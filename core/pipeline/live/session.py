@@ -50,7 +50,7 @@ _RATE_OVER_S = 2.0
 
 
 class LiveLoop:
-    """Loop of a live recording: one source, one step."""
+    """Loop of a live recording that takes frames from one source through one step until it is stopped."""
 
     def __init__(
         self, context: LiveContext, step: LiveStep, commands: Callable[[], Command | None], ready: Callable[[], bool]
@@ -71,11 +71,11 @@ class LiveLoop:
 
     @property
     def dropped(self) -> int:
-        """Number of frames lost since the first picture was recorded, by the source and by the disk."""
+        """Number of frames that source and disk have lost since the first picture was recorded."""
         return self._dropped_before + self._dropped_now - self._unmissed + self._context.lost
 
     def run(self) -> Message | None:
-        """Run until the end; return what ended it too early, or None."""
+        """Record until stopped or the source ends; return the message of an error that ended it too early, or None."""
         try:
             self._open()
             self._source.prepare(self._context.request.step)
@@ -262,7 +262,7 @@ def run_live(
     emit: Callable[[LiveEvent], None],
     ready: Callable[[], bool],
 ) -> LiveEnded:
-    """Record live until stopped, or until the source is at its end.
+    """Record live until stopped, or until the source has no more frames; return what was recorded.
 
     Parameters
     ----------

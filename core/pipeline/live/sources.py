@@ -28,7 +28,7 @@ from core.simulate.scenario import Scenario
 
 
 def list_sources(kind: str) -> tuple[SourceInfo, ...]:
-    """List the sources of a kind that can be chosen now; empty if none is found, or its driver is not installed.
+    """List the sources of a kind that can be chosen now; () if none is found, or the driver is not installed.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def list_sources(kind: str) -> tuple[SourceInfo, ...]:
 
 
 def missing_driver(kind: str) -> Message | None:
-    """Give the reason why sources of a kind cannot be used on this computer, and what to install; None if they can.
+    """Return why sources of a kind cannot be used on this computer, and what to install; None if they can.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def missing_driver(kind: str) -> Message | None:
 
 
 def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
-    """Make the source of a choice, not opened yet.
+    """Make the source that the user has chosen, without opening it.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
 
 
 def camera_name(choice: SourceChoice, source: FrameSource) -> str:
-    """Return the name of an open camera in the logs of recordings; "" for a replay, whose pictures are older.
+    """Make the name of an open camera for the logs of recordings; "" for a replay, whose pictures are older.
 
     Cameras of one name at two computers are two. What lies before the simulated rig is none of its own.
     """

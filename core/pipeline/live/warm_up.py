@@ -45,7 +45,7 @@ _SWEEPS = 8
 
 
 def exposed(levels: PixelType, light: Array) -> Picture:
-    """Make the picture of stripes (h, w) of height 1 on a dark ground, with a little noise."""
+    """Make a picture (h, w) from `light` (h, w), stripes of height 1, on a dark ground with a little noise."""
     full = float(np.iinfo(levels).max)
     noise = np.random.default_rng(0).normal(0, 0.004, light.shape)
     grey = np.clip(full * (0.04 + 0.5 * light + noise), 0, full)
@@ -54,7 +54,7 @@ def exposed(levels: PixelType, light: Array) -> Picture:
 
 @cache
 def get_ready_for_live(levels: PixelType) -> None:
-    """Compile what pictures of these `levels` need; what is compiled already takes no time.
+    """Compile all that the live preview needs for pictures of type `levels`, by previewing a made-up scan.
 
     A plate with a ridge under the fan, and sweeps over it, are looked at.
     """
@@ -91,17 +91,17 @@ Stages = tuple[Callable[[], None], ...]
 
 
 def stages() -> Stages:
-    """List the parts to be compiled, none much longer than a minute; the last one records that all are done."""
+    """List the functions that compile one part each, none much longer than a minute; the last one records the end."""
     return (*(stage for share in shares() for stage in share), keep_complete)
 
 
 def ahead() -> tuple[Stages, bool]:
-    """List the parts to be compiled, and whether that takes long: it was not done before."""
+    """List the functions that compile a part each, and whether calling them takes long as it was not done before."""
     return stages(), not is_complete()
 
 
 def shares() -> tuple[Stages, Stages]:
-    """Divide the stages into two shares of about the same length, for two processes: they compile little twice."""
+    """Divide the functions that compile a part each into two lists of about the same duration, for two processes."""
     return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface, _whole_numbers)
 
 

@@ -47,9 +47,9 @@ def _accepted(folder: Path, project: Project) -> CameraCalibration:
 
 
 def find_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews:
-    """Look for the camera target in every picture; InputError if there are none, or their sizes differ.
+    """Find the camera target in every picture and store the views in the project; InputError without pictures.
 
-    What is found is kept in the project.
+    InputError as well if their sizes differ.
     """
     pictures = PictureReader(project_set(folder, project))
     seen = see_views(pictures, progress)
@@ -58,17 +58,17 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
 
 
 def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
-    """Read the views that `find_views` found in these pictures, if it has not searched others since; else None."""
+    """Read the views stored by `find_views`, if they are of the project's pictures and target as of now; else None."""
     return stored_views(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
-    """Calibrate the camera from views, without those left out; InputError if they do not determine it."""
+    """Calibrate the camera from the views `seen`, except those left out by hand; InputError if they do not suffice."""
     return solve_camera(seen, project.options.for_camera, progress, project.rig.camera_board)
 
 
 def accept_camera(folder: Path, project: Project, calibration: CameraCalibration, progress: Progress = silent) -> str:
-    """Store a camera's calibration in the project and return its id: the caller makes it the accepted one.
+    """Store a camera's calibration in the project's history and return its id; the caller makes it the accepted one.
 
     Raises
     ------
@@ -98,14 +98,14 @@ def find_poses(
 
 
 def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
-    """Read the poses that `find_poses` found in these pictures with the accepted camera; else nothing."""
+    """Read the poses stored by `find_poses`, if they are of the same pictures, plate and camera; else ()."""
     return stored_poses(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_poses(
     folder: Path, project: Project, poses: Sequence[PoseFeatures], progress: Progress = silent
 ) -> FanCalibration:
-    """Calibrate the fan with the accepted camera, without the poses left out.
+    """Calibrate the fan from `poses` with the accepted camera, except the poses left out by hand.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def accept_planes(
     accept_few_poses: bool = False,
     progress: Progress = silent,
 ) -> str:
-    """Store a fan's calibration in the project and return its id: the caller makes it the accepted one.
+    """Store a fan's calibration in the project's history and return its id; the caller makes it the accepted one.
 
     With `accept_few_poses` somebody has decided that it may rest on fewer than half of the poses.
 

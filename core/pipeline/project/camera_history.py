@@ -20,7 +20,7 @@ from core.progress import Progress, silent
 
 
 def recall_camera(project_folder: Path, project: Project, progress: Progress = silent) -> RecalledCamera:
-    """Read the accepted calibration of a project, and check whether it is of the project's pictures.
+    """Read a project's accepted camera, with its views if it was made from the project's pictures as they are.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def recall_camera(project_folder: Path, project: Project, progress: Progress = s
 def compare_stored(
     project_folder: Path, first_id: str, second: CameraCalibration | str, progress: Progress = silent
 ) -> CameraChanges:
-    """Compare a calibration of the history with `second`, a calibration or the id of one.
+    """Compare the camera calibration `first_id` of the history with `second`, a calibration or the id of one.
 
     Raises
     ------

@@ -37,7 +37,7 @@ def clicked_faces(
     progress: Progress = silent,
     memory: MutableMapping[str, Any] | None = None,
 ) -> ClickedFaces:
-    """Find the faces that contain these points.
+    """Find the faces of the scanned part that contain the clicked `points`, indices into the project's cloud.
 
     Parameters
     ----------

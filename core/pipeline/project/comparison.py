@@ -23,7 +23,10 @@ MOST_DRAWN = 200_000
 def compare_project(
     folder: Path, other: Path, align: str, scales: ComparisonScales, progress: Progress = silent
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare the scan of a project, as `compare_step`, and note it in the project's audit trail."""
+    """Compare a project's scan with the surface in `other`, and note the written files in its audit trail.
+
+    As `core.pipeline.steps.compare_step.compare_step`.
+    """
     folder = folder if folder.is_dir() else folder.parent
     with noting_results(folder):
         return compare_step(folder, other, align, scales, progress=progress)
@@ -32,7 +35,7 @@ def compare_project(
 def show_comparison(
     folder: Path, other: Path, align: str, diameter_mm: float = 0.0, progress: Progress = silent
 ) -> ShownComparison:
-    """Compare the scan of a project over circles of that diameter (0: chosen), write it and return its drawing.
+    """Compare a project's scan with the surface in `other` over circles of `diameter_mm` (0: chosen), for display.
 
     Raises
     ------
@@ -64,7 +67,7 @@ def show_comparison(
 
 
 def forget_comparison(folder: Path, progress: Progress = silent) -> None:
-    """Remove the comparison from the results of a project, and so from its report.
+    """Remove the comparison with another surface from a project's results, and so from its report.
 
     Raises
     ------

@@ -38,7 +38,7 @@ from core.scan.surface.coverage_map import CoverageMap
 
 
 def show_frame(folder: Path, project: Project, name: str, progress: Progress = silent) -> FrameStages:
-    """Compute every stage of one frame ("scan/frame0007.png"), with the accepted calibrations as far as there are any.
+    """Compute all stages of processing one frame, `name` as in "scan/frame0007.png", with what is calibrated so far.
 
     What a measurement of this very recording has settled (the look of the stripes, the numbers of the fan's lines) is
     taken from it.
@@ -57,7 +57,7 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
 def accepted_calibration(
     folder: Path, project: Project, progress: Progress = silent
 ) -> tuple[Camera | None, Fan | None, Acquisition | None]:
-    """Read the accepted camera and fan, as far as there are any, and how the fan's pictures were taken, if known.
+    """Read the accepted camera and fan, and how the fan's pictures were taken; None for each that is not there.
 
     InputError if one is damaged or they are not a pair.
     """
@@ -69,7 +69,7 @@ def accepted_calibration(
 
 
 def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
-    """Read the scan among the results of the project in `folder`; without points if there is none that can be read."""
+    """Read the scan among the results of the project in `folder`, for display; without points if none can be read."""
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
     features = None if results.cloud is None else read_scan(results.files["scan"]).features
@@ -95,7 +95,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
 def show_pose(
     folder: Path, project: Project, pose: PoseFeatures, fan: Fan | None = None, progress: Progress = silent
 ) -> PoseStages:
-    """Read the picture of one pose with what was found in it; its stripes are numbered if there is a fan.
+    """Read the picture of one pose with target and stripes found in it; the stripes are numbered if `fan` is given.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def show_pose(
 def recall_poses(
     folder: Path, project: Project, progress: Progress = silent
 ) -> tuple[tuple[PoseFeatures, ...], FanCalibration]:
-    """Read the poses of the accepted fan, and solve the fan from them again, with all its points.
+    """Read the poses of the accepted fan, and solve the fan again from them, with the points of all its stripes.
 
     The fan is that of the project's settings as they are: the accepted one only if they are the same.
 

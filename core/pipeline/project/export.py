@@ -30,7 +30,7 @@ from core.report.template import ReportTemplate
 
 
 def preview_report(folder: Path, project: Project, width_px: int, progress: Progress = silent) -> Pages:
-    """Draw the pages of the report as they would be now, each (height, `width_px`, 3); results stay as they are.
+    """Draw the pages of the report from the project as it is now, each (height, `width_px`, 3); nothing is written.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def preview_report(folder: Path, project: Project, width_px: int, progress: Prog
 
 
 def choose_template(folder: Path, choices: ReportChoices, path: Path | None) -> ReportChoices:
-    """Set the template in `path` (None: none) in the choices, with the paper, language and sections it names.
+    """Set the template in `path` (None: none) in the report's choices, with paper, language and sections it names.
 
     What it does not name stays as it is, and everything can be chosen otherwise afterwards.
 
@@ -63,7 +63,7 @@ def choose_template(folder: Path, choices: ReportChoices, path: Path | None) -> 
 
 
 def with_template(content: ReportContent, template: ReportTemplate) -> ReportContent:
-    """Apply a template to the content: its words, and the paper, language and sections it names."""
+    """Apply a template to a report's content: its words, and the paper, language and sections that it names."""
     return replace(
         content,
         template=template,
@@ -81,7 +81,7 @@ def export(
     in_camera_frame: bool = False,
     progress: Progress = silent,
 ) -> Path:
-    """Write a project's result of a kind out of EXPORTS to `path` and return it; it appears whole or not at all.
+    """Write one result of a project, a `kind` of EXPORTS, to `path` and return `path`; it appears whole or not at all.
 
     The report is a copy of the one among the results, or made on the way where the project cannot be written to.
 
@@ -118,7 +118,7 @@ def export_results(
     *,
     in_camera_frame: bool = False,
 ) -> dict[str, Path]:
-    """Write the results in `out` as `kinds` out of EXPORTS, into the folder `to` (None: beside the results).
+    """Write results in the folder `out` as each of `kinds` of EXPORTS, into `to` (None: beside them); return the files.
 
     One that cannot be had keeps none of the others from being written; it is told when these are.
 
@@ -194,7 +194,7 @@ def import_camera(path: Path, out: Path) -> CameraCalibration:
 
 
 def keep_imported_camera(folder: Path, project: Project, path: Path) -> str:
-    """Store a camera calibrated by OpenCV or ROS in the project and return its id; InputError as :func:`import_camera`.
+    """Store a camera calibrated by OpenCV or ROS in the project's history and return its id; see `import_camera`.
 
     The caller makes it the accepted one.
     """

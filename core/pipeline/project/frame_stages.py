@@ -45,7 +45,9 @@ def frame_stages(
     progress: Progress = silent,
     settled: SettledScan | None = None,
 ) -> FrameStages:
-    """Compute one frame at every stage. What all frames have in common is kept until another recording is looked at.
+    """Compute one frame of a recording at every stage of processing.
+
+    What all frames have in common is kept until another recording is looked at.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ _STEP = label("preparing what is shown")
 
 
 def inspection_view(folder: Path, project: Project, progress: Progress = silent) -> InspectionView:
-    """Read the scan among the results of a project, with its thickness if one was measured.
+    """Read the scan among the results of a project for display, with its thickness if one was measured.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
 
 
 def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progress: Progress = silent) -> Array:
-    """Compute the outline (n, 2) in px of the points of these numbers in the cloud, or of the plane face they select.
+    """Compute the outline (n, 2) in px of the points `numbers` of the cloud, or of the plane `face` they lie on.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
 
 
 def scan_replaced(path: Path, todo: Message) -> InputError:
-    """Make the complaint that a choice was made on another scan than the one in `path`."""
+    """Make the error that the scan a choice was made on has been replaced by the one in `path`."""
     return InputError(
         Message("project.scan_replaced", "this scan has been replaced by another one"), where=path, todo=todo
     )

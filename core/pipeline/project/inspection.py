@@ -39,7 +39,7 @@ LAST = "last inspection"
 def measure_features(
     folder: Path, project: Project, progress: Progress = silent, memory: Memory | None = None
 ) -> ShownInspection:
-    """Measure the project's plan and write inspection.json among its results.
+    """Measure the features of the project's plan on its scan, and write inspection.json among its results.
 
     The same numbers as `trisect inspect RESULTS --plan plan.toml` with the same plan; names of nominal surfaces are of
     the project's folder. A feature that cannot be measured has its problem; the others are measured.
@@ -65,7 +65,7 @@ def measure_features(
 def look_at_features(
     folder: Path, project: Project, progress: Progress = silent, memory: Memory | None = None
 ) -> ShownInspection:
-    """Read the measured features to be drawn, or measure them again, without writing anything."""
+    """Read the measured features of the project's plan for display; measure them, writing nothing, if out of date."""
     progress("features", 0, 1)
     kept = read_shown(results_folder(folder) / FILES["inspection"], plan_tables(project.inspection))
     return kept or _shown(*_inspected(folder, project, progress, memory))

@@ -42,7 +42,7 @@ CHECK = "check"
 
 
 def check_rig(folder: Path, project: Project, progress: Progress = silent) -> InterimCheck:
-    """Check the accepted calibrations by the project's pictures of the day.
+    """Check the accepted calibrations by the project's pictures of an interim check, and write the result.
 
     The new result takes the place of the old one when all is done; until then, and if it is cancelled, that stays.
 
@@ -60,20 +60,20 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
 
 
 def show_check(folder: Path) -> InterimCheck | None:
-    """Read the result of the project's last check; None if there is none, InputError if it is damaged."""
+    """Read the result of the project's last interim check; None if there is none, InputError if it is damaged."""
     path = folder / CHECK / FILES["check"]
     return read_check(path) if path.exists() else None
 
 
 def check_history(folder: Path, project: Project) -> RigHistory:
-    """Read every known check of the project's rig on this computer; InputError if the file is damaged."""
+    """Read all interim checks of the project's rig known on this computer; InputError if their file is damaged."""
     return history_of(project.rig, _accepted(folder, project).id)
 
 
 def compare_with_artefact(
     folder: Path, project: Project, artefact: Artefact, characteristic: str = ""
 ) -> ArtefactCheck:
-    """Compare a result of the project with the certificate of the artefact that was measured.
+    """Compare a length measured in the project with the certificate of the artefact that was measured.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def compare_with_artefact(
 
 
 def comparable_lengths(folder: Path) -> Mapping[ArtefactKind, tuple[str, ...]]:
-    """List the project's measured characteristics that an artefact of each kind may be compared with, by name.
+    """List by name, for each kind of artefact, the lengths measured in the project that its certificate may state.
 
     Of a block "" is the thickness of the part as a whole, measured or not. InputError if inspection.json is damaged.
     """
@@ -95,7 +95,7 @@ def comparable_lengths(folder: Path) -> Mapping[ArtefactKind, tuple[str, ...]]:
 
 
 def artefact_checks(folder: Path, project: Project) -> tuple[ArtefactCheck, ...]:
-    """Read for each artefact measured with the accepted calibrations the check nearest in time to the recording.
+    """Read, for each artefact measured with the accepted calibrations, its check nearest in time to the scan.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def artefact_checks(folder: Path, project: Project) -> tuple[ArtefactCheck, ...]
 
 
 def artefact_charts(folder: Path, project: Project) -> tuple[CheckChart, ...]:
-    """Make the charts of each artefact measured with the accepted calibrations, with their limits.
+    """Make the control charts of each artefact measured with the accepted calibrations, with their limits.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def artefact_charts(folder: Path, project: Project) -> tuple[CheckChart, ...]:
 
 
 def propose_project_readjustment(folder: Path, project: Project, progress: Progress = silent) -> ProposedReadjustment:
-    """Compute how the accepted camera and fan would be re-adjusted by the project's check; nothing is stored.
+    """Compute how the project's interim check would re-adjust the accepted camera and fan; nothing is stored.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def propose_project_readjustment(folder: Path, project: Project, progress: Progr
 def accept_readjustment(
     folder: Path, project: Project, proposed: ProposedReadjustment, progress: Progress = silent
 ) -> str:
-    """Store a re-adjusted fan, and the camera that belongs to it; returns its id: the caller makes it the accepted one.
+    """Store a re-adjusted fan and the camera that belongs to it; return its id, for the caller to accept.
 
     Raises
     ------

@@ -44,7 +44,7 @@ def measure_scan(
     seen: Callable[[], SeenScan] | None = None,
     beside: SecondProcess | None = None,
 ) -> ScanSummary:
-    """Measure surface and thickness with the accepted calibrations; a part without two parallel faces is no error.
+    """Measure the surface of a project's scan and its thickness; a part without two parallel faces is no error.
 
     New results take the place of the old ones when all is done; until then, and if it is cancelled, the old ones stay.
     Where the scan among them is of the same pictures and another σ cut, method or calibration is to be used, the
@@ -94,7 +94,7 @@ def measure_scan(
 
 
 def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -> GaugeResult:
-    """Measure the thickness of the scan among the results, with the project's regions and nominal value.
+    """Measure the thickness of the scan among the project's results, in the regions and with the nominal it states.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
 
 
 def record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
-    """Write into run.json how the calibrations were made, as if they had been made with the scan."""
+    """Write into run.json how the accepted calibrations were made, as if they had been made with the scan."""
     calibration, record = work.calibration(), work.record()
     solved = {"camera": solved_for(calibration.camera)}
     steps = (

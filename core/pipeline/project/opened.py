@@ -50,61 +50,61 @@ class OpenedProject:
         return _stamps(self.folder) != self._stamps
 
     def opened_again(self) -> OpenedProject:
-        """Open the project as it is on the disk now."""
+        """Open the same project anew, with its files as they are on the disk now."""
         return open_project(self.folder)
 
     @cached_property
     def results(self) -> ProjectResults:
-        """Results that belong together, and in `problems` why others do not."""
+        """Results of one calibration and scan, and in `problems` why others are left out."""
         self._require_unchanged()
         return load_results(self.folder)
 
     @cached_property
     def settings(self) -> Project | None:
-        """Settings of the project: rig, options, plan; None in a folder of results."""
+        """Settings of the project: rig, options, plan; None for a folder of results."""
         file = self._file
         return file.project if file is not None else None
 
     @property
     def camera(self) -> CameraCalibration | None:
-        """Camera with its covariance."""
+        """Calibration of the camera with its covariance; None if there is none."""
         return self.results.camera
 
     @property
     def planes(self) -> FanCalibration | None:
-        """Light planes of the fan with their covariance."""
+        """Calibration of the fan's light planes with their covariance; None if there is none."""
         return self.results.fan
 
     @property
     def cloud(self) -> Cloud | None:
-        """Points in mm in the camera frame, each with its σ."""
+        """Points of the scan in mm in the camera frame, each with its σ; None without a scan."""
         return self.results.cloud
 
     @property
     def mesh(self) -> Mesh | None:
-        """Mesh of corners in mm in the camera frame, and triangles."""
+        """Triangle mesh of the scan's surface, in mm in the camera frame; None without a scan."""
         return self.results.mesh
 
     @property
     def gauge(self) -> GaugeResult | None:
-        """Thickness with its budget."""
+        """Measured thickness with its uncertainty budget; None if none was measured."""
         return self.results.gauge
 
     @cached_property
     def inspection(self) -> InspectionFile | None:
-        """Results of the plan's features."""
+        """Results of the features of the inspection plan; None if they were not measured."""
         self._require_unchanged()
         path = results_in(self.folder) / FILES["inspection"]
         return read_inspection(path) if path.exists() else None
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Values with U and verdict, the worst first; empty without a scan."""
+        """Measured values of the part with U and verdict, the worst first; () without a scan."""
         return self._listed.worst_first
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on the part, from all its characteristics."""
+        """Verdict on the whole part, from all its measured values."""
         return self._listed.verdict
 
     @cached_property

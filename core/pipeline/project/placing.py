@@ -24,7 +24,7 @@ WIDTH_PX = 640
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Placing:
-    """Place of a part in the picture.
+    """Place of a part in the picture: the reference picture and the outline of the part's upper face.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Placing:
 
 
 def placing(folder: Path, project: Project, progress: Progress = silent) -> Placing | None:
-    """Determine where the part of a project lay; None without a measured thickness or a reference picture.
+    """Find where the part of a project lay in the picture; None without a measured thickness or a reference picture.
 
     Raises
     ------

@@ -26,8 +26,9 @@ def pose_stages(
     progress: Progress = silent,
     stripe: StripeSettings | None = None,
 ) -> PoseStages:
-    """Compute the stages of one pose; without a fan its stripes have no numbers yet. `stripe` is what was looked for,
-    if given.
+    """Compute all stages of finding the stripes in one pose; without a `fan` they have no line numbers.
+
+    `stripe` is the width and contrast that were looked for, if given.
 
     Raises
     ------

@@ -26,7 +26,7 @@ PROFILES = "profiles"
 def measure_profiles(
     folder: Path, project: Project, tilt: StatedTilt | None = None, progress: Progress = silent
 ) -> ProfilesSummary:
-    """Measure the step in the project's pictures of the fan alone with the accepted calibrations, and report it.
+    """Measure a step by the project's pictures of the fan alone with the accepted calibrations, and report it.
 
     New results take the place of old ones in PROFILES when all is done; those of the scan stay as they are.
 

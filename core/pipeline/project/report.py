@@ -27,7 +27,7 @@ from core.second_process import SecondProcess
 def make_report(
     folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
 ) -> Path:
-    """Write the results into report.pdf, with the project's data of the job; returns its path.
+    """Write report.pdf from the project's results and its data on the job; return its path.
 
     The process `beside` draws it, if there is one.
 
@@ -42,7 +42,7 @@ def make_report(
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
-    """Make the report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
+    """Make the report of the project's results, as the bytes of a PDF, without writing anything."""
     return build_report(project_content(folder, project, progress), progress)
 
 
@@ -54,7 +54,7 @@ def project_content(folder: Path, project: Project, progress: Progress = silent)
 
 
 def with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
-    """Add the user's texts on job and report to the report's content.
+    """Add the user's texts about the job, the studies kept and the template to a report's content.
 
     Raises
     ------

@@ -29,10 +29,10 @@ _PARTS = 6
 
 
 def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
-    """Read the results of the project in `folder`, which may be a folder of results itself.
+    """Read the results of the project, or the results themselves, in `folder`; what is missing or wrong is None.
 
-    What is missing is None. What is damaged or was measured with another calibration is None, too, and a sentence says
-    so; nothing is raised for it.
+    What is damaged or was measured with another calibration is None, too, and a sentence says so; nothing is raised for
+    it.
     """
     reader = _Reader(results_in(folder), progress)
     camera = reader.read("camera", read_camera)

@@ -46,7 +46,7 @@ def sample_project(folder: Path, speaks: str = "en", progress: Progress = silent
 
 
 def sample_to_measure(speaks: str = "en", progress: Progress = silent) -> Project:
-    """Describe the sample's pictures as a project with nothing measured; they are rendered if they are not there yet.
+    """Make a project of the sample's pictures with nothing measured; render these pictures if they are not there.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def clear_unfinished(folder: Path) -> None:
 
 
 def finished_project(folder: Path, project: Project, progress: Progress = silent) -> ProjectFile:
-    """Do every step of a project, and accept each calibration.
+    """Do every step of a project from its pictures to its report, accepting each calibration.
 
     Raises
     ------

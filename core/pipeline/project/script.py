@@ -56,7 +56,9 @@ class _Line:
 
 
 def write_script(folder: Path, path: Path, language: str = "en") -> Path:
-    """Write the script of the project in `folder` to `path` and return it; its remarks are in `language`.
+    """Write a script of commands that repeats the project's measurement to `path`; return `path`.
+
+    Its remarks are in `language`.
 
     Raises
     ------
@@ -68,7 +70,10 @@ def write_script(folder: Path, path: Path, language: str = "en") -> Path:
 
 
 def script_text(folder: Path, words: Words) -> str:
-    """Make the text of the script; InputError if nothing has been measured, or a file of the project is damaged."""
+    """Make the text of a script that repeats the project's measurement; InputError if nothing has been measured.
+
+    InputError as well if a file of the project is damaged. `words` gives the remarks.
+    """
     file, results = _with_whole_paths(folder, read_project(folder)), results_folder(folder)
     if not (results / FILES["run"]).exists():
         raise InputError(

@@ -25,7 +25,7 @@ LEAST_CONTRAST = 16.0
 def display_picture(
     path: Path, channel: Channel | None, width_px: int, mosaic: Pattern | None = None, progress: Progress = silent
 ) -> tuple[Thumbnail, int]:
-    """Read a picture in 8 bit, reduced by a whole factor to at most `width_px` across, and return the factor too.
+    """Read a picture in 8 bit, reduced by a whole factor to at most `width_px` across; return it and the factor.
 
     Raw pictures of a `mosaic` are shown in the `channel`, without the checkerboard they are.
 
@@ -72,12 +72,12 @@ def stripe_thumbnails(
     mosaic: Pattern | None = None,
     progress: Progress = silent,
 ) -> tuple[Thumbnail | None, ...]:
-    """Make small pictures of the frames of a scan, as `thumbnails`, with visible stripes."""
+    """Make a small 8-bit picture of each frame in `paths`, brightened so that stripes show; None if unreadable."""
     return thumbnails(paths, channel, mosaic, progress=progress, of_stripes=True)
 
 
 def brightened(picture: Thumbnail) -> Thumbnail:
-    """Stretch the picture from its background, black, to its stripes, white; noise alone is left dark."""
+    """Stretch a picture's grey levels so that its background is black and its stripes white; noise alone stays dark."""
     background, stripes = np.percentile(picture, (5.0, 99.8))
     grey = (picture - background) * (255.0 / max(stripes - background, LEAST_CONTRAST))
     return np.asarray(np.clip(grey, 0, 255), np.uint8)

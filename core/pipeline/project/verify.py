@@ -30,7 +30,7 @@ CHANGING = ".results-changing"
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """Result of verifying a project: the audit trail, how many files were compared, what differs, and notes."""
+    """Result of comparing a project's files with their recorded hashes: the audit trail, counts, problems and notes."""
 
     trail: Trail
     results: int
@@ -41,7 +41,7 @@ class Verified:
 
 @contextmanager
 def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
-    """Note the project's results in its audit trail once the block has made or changed them.
+    """Write an entry on the project's results into its audit trail when this block has made or changed them.
 
     A block that fails has its entry where it changed something all the same. Should the program end before the entry
     is written, a mark beside the results says so: `verify` then does not call good results changed.
@@ -66,7 +66,7 @@ def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
 
 
 def note_results(folder: Path, *, reported: bool = False) -> None:
-    """Note the project's results of now in its audit trail; raises as `append`."""
+    """Write an entry with the hashes of the project's results as they are into its audit trail; raises as `append`."""
     append(folder, "reported" if reported else "measured", files=_hashes(folder))
 
 
@@ -75,7 +75,7 @@ def _hashes(folder: Path) -> dict[str, str]:
 
 
 def verify(folder: Path, set_folder: Path | None = None, head: str = "", progress: Progress = silent) -> Verified:
-    """Compare everything that has a hash with the files on the disk.
+    """Compare the pictures and results of a project with the hashes recorded when they were made; list what differs.
 
     Parameters
     ----------

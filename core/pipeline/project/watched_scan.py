@@ -25,7 +25,7 @@ Watch = Callable[[ScanDetail], None]
 def measure_watched(
     folder: Path, project: Project, progress: Progress = silent, watch: Watch | None = None
 ) -> ScanSummary:
-    """Measure as `measure_scan`; `watch` is called for each frame in the order of the recording, on this thread.
+    """Measure a project's scan as `measure_scan`, calling `watch` for each frame, in order, on this thread.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def measure_watched(
 
 
 class WatchReporter:
-    """Reporter that accumulates the features of frames, one after another, and calls `watch` with them."""
+    """Reporter that adds up points and coverage of a scan frame by frame, and calls `watch` with the state so far."""
 
     def __init__(self, image_size: tuple[int, int], watch: Watch) -> None:
         self._watch, self._coverage = watch, CoverageMap(image_size)

@@ -46,7 +46,7 @@ SHARED = {"planes", "scan"}
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Reason why the whole job stopped, and the page where the user has to decide or to repair something."""
+    """Reason why measuring a whole project stopped, and the page where the user has to decide or repair something."""
 
     page: str
     why: Message
@@ -54,7 +54,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class WholeJob:
-    """Result of the whole job: the project with its accepted calibrations and results, and where it stopped, if so."""
+    """Result of measuring a whole project: the project as it is then, and where it stopped (None: it did not)."""
 
     file: ProjectFile
     stop: Stop | None
@@ -67,7 +67,7 @@ def measure_all(
     progress: Progress = silent,
     watch: Watch | None = None,
 ) -> WholeJob:
-    """Do every step of a project that is not up to date, from its pictures to its report.
+    """Do every step of a project that is not up to date, from its pictures to its report, until one needs the user.
 
     It stops where somebody has to decide: at a calibration that is bad, was rejected, or rests on a minority of its
     poses; after a check that is not passed; where a thickness or a feature that is asked for could not be measured;

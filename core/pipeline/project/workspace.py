@@ -19,7 +19,7 @@ from core.pipeline.steps.workspace import Workspace
 
 
 def project_set(folder: Path, project: Project) -> RecordingSet:
-    """Make one recording set of the pictures of a project, with the names they would have in one.
+    """Make one recording set of a project's pictures, with the names they would have in the folder of a set.
 
     Raises
     ------
@@ -33,9 +33,9 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 
 def rig_in_its_air(project: Project) -> Rig:
-    """Set unstated temperatures of check and scan to that of the air.
+    """Set temperatures of check and scan that the rig leaves unstated to the air's in the project.
 
-    Only where one of calibration or a drift is stated.
+    Only where the calibration's temperature or a drift is stated.
     """
     rig, celsius = project.rig, project.info.air_celsius
     air = rig.air
@@ -46,10 +46,13 @@ def rig_in_its_air(project: Project) -> Rig:
 
 
 def part_name(project: Project) -> str:
-    """Return the part's name; the project's name where none is given."""
+    """Return the part's name, or the project's name where the part has none."""
     return project.info.part or project.options.part or project.info.name
 
 
 def project_workspace(folder: Path, project: Project) -> Workspace:
-    """Make the workspace of a project's pictures and results; InputError as `project_set` and `Workspace.open`."""
+    """Make the workspace of a project: its pictures as a recording set, and its folder of results.
+
+    InputError as `project_set` and `Workspace.open`.
+    """
     return Workspace.open(project_set(folder, project), make_inner_folder(folder, RESULTS), part_name(project))

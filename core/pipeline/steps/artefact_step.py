@@ -33,7 +33,7 @@ _MEASURED_AS: Mapping[ArtefactKind, tuple[str, str]] = {
 def artefact_step(
     work: Workspace, artefact: Artefact, celsius: float | None = None, characteristic: str = ""
 ) -> ArtefactCheck:
-    """Compare the measured length of an artefact with its certificate, and add that to the rig's history.
+    """Compare the measured length of an artefact with its certificate, and add this check to the rig's history.
 
     Of a block that is the thickness of the part, of a sphere or a step its diameter or height in inspection.json, and
     `characteristic` says which where there are several. It is at 20 °C where the part's temperature is stated;
@@ -69,7 +69,7 @@ def artefact_step(
 
 
 def lengths_of(file: InspectionFile, kind: ArtefactKind) -> tuple[Characteristic, ...]:
-    """List the characteristics of a plan that a certificate of this kind can state."""
+    """List the characteristics in inspection.json that an artefact's certificate of this `kind` can state."""
     feature, result = _MEASURED_AS[kind]
     return tuple(
         row for row in file.characteristics if row.kind == result and file.kinds.get(file.features[row.name]) == feature
@@ -77,7 +77,7 @@ def lengths_of(file: InspectionFile, kind: ArtefactKind) -> tuple[Characteristic
 
 
 def frames_id(recording_set: RecordingSet, record: RunRecord) -> str:
-    """Compute twelve hex digits that identify the frames by their content when they were measured."""
+    """Compute an id of 12 hex digits from the hashes that the frames had when they were measured."""
     text = "\n".join(record.inputs.get(recording_set.name_of(path), "") for path in recording_set.frames)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 

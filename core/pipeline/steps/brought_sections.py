@@ -21,7 +21,10 @@ STUDIES = "studies"
 
 
 def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
-    """Add the sections of all wings on the results in the folder `out`; a note tells of one that fails."""
+    """Add to a report's content the sections that plug-ins (wings) make of the results in `out`.
+
+    A note tells of a section that fails.
+    """
     sections, failed = list[BroughtSection](), list[Message]()
     for wing, origin in wings().wings:
         for one in wing.sections:
@@ -38,13 +41,13 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
 
 
 def study_reader() -> Callable[[Path], ReportedStudy] | None:
-    """What reads a study.json for the report; None where no wing does."""
+    """Return the function of a plug-in (wing) that reads a study.json for the report; None where none does."""
     places = (wing.reads_study for wing in wings() if wing.reads_study)
     return next((found_at(place) for place in places), None)
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
-    """The content with the studies in `paths`, each a study.json or its folder.
+    """Add to a report's content the studies in `paths`, each a study.json or its folder.
 
     Raises
     ------

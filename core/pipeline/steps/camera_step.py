@@ -63,13 +63,13 @@ def camera_step(work: Workspace, settings: Options | None = None, progress: Prog
 
 
 def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
-    """Whether skew and k3 were solved for, asked for or by themselves."""
+    """Return by name whether skew and k3 of a camera were solved for, by the settings or automatically."""
     found = (parameters_of(calibration.camera) != 0) & (np.diag(calibration.covariance) > 0)
     return {"skew": bool(found[SKEW]), "k3": bool(found[K3])}  # a skew left at 0 is uncertain all the same
 
 
 def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews:
-    """Find the target in every view, a few pictures at a time.
+    """Find the camera target in every view, a few pictures at a time.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def solve_camera(
     progress: Progress = silent,
     tolerance: BoardTolerance | None = None,
 ) -> CameraCalibration:
-    """Calibrate the camera from views, without those left out by hand, which are judged by the solution.
+    """Calibrate the camera from views except those left out by hand, whose residuals are computed all the same.
 
     `tolerance` is what is known of how true the target is.
 

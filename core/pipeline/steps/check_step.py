@@ -184,14 +184,14 @@ class _OfStep(NamedTuple):
 
 
 def check_paths(recording_set: RecordingSet) -> list[Path]:
-    """List the pictures of the check."""
+    """List the paths of the pictures of a set's interim check."""
     return recording_set.pictures_of(recording_set.check)
 
 
 def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSet:
-    """Remove from the set the pictures of its check by which camera and fan were re-adjusted: they are used up.
+    """Remove from a set those pictures of its interim check that camera and fan were re-adjusted by.
 
-    The same pictures are known by what is in them.
+    They cannot check what was made with them, and are known again by their content.
     """
     used: set[str] = set()
     known = fan.readjusted
@@ -220,7 +220,7 @@ def since_calibration(
     scanned: Acquisition | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
 ) -> Change:
-    """Estimate what may have changed since the calibration, as far as no picture excludes it.
+    """Estimate how camera and fan may have changed from their calibration to the scan, by stated and measured facts.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def _readjusted_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> 
 
 
 def checked_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> bool:
-    """Whether pictures show the rig on the day of the scan: those of a check, or those it was re-adjusted by."""
+    """Whether pictures show the rig on the day of the scan: of an interim check, or of its re-adjustment."""
     fresh = fresh_check(recording_set, fan)
     return _days_apart(fresh) <= SAME_DAY if fresh.check else _readjusted_on_the_day(recording_set, fan)
 
@@ -278,7 +278,7 @@ def checked_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> bool
 def charted_spread(
     recording_set: RecordingSet, calibration: Calibration, when: datetime | None = None
 ) -> RigSpread | None:
-    """Estimate how much the rig changes from the history of its checks before `when`; None without information.
+    """Estimate from a rig's history of checks before `when` how much it changes; None where that tells too little.
 
     Without `when` it is for the scan's frames, and None where there are none.
     """
@@ -294,7 +294,7 @@ def charted_spread(
 
 
 class Judged(NamedTuple):
-    """Judgement of the rig since its calibration by the pictures of a set."""
+    """Judgement of how camera and fan have changed since their calibration, and what it rests on."""
 
     deviations: tuple[Deviation, ...]
     """Those that are reckoned with."""
@@ -314,9 +314,10 @@ def judged(
     at_scan: bool = False,
     scanned: Acquisition | None = None,
 ) -> Judged:
-    """Judge the rig by the pictures of a set and the poses of its interim `check`.
+    """Judge how camera and fan have changed since calibration, by the poses of an interim `check` and other pictures.
 
-    When its check was taken, or `at_scan`; by which camera and when that was is `scanned`, None where it is not known.
+    When the check was taken, or `at_scan`, when the frames were; `scanned` says by which camera and when these were
+    taken, None where it is not known. `of_measured` says how well deviations agree with the scan.
     """
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
@@ -358,7 +359,7 @@ def judged(
 
 
 def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
-    """Note what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
+    """Make notes on what is assumed of a rig's stability: where not all is stated, or its history of checks is used."""
     if change.sitting_hours is not None:
         kelvins = notes_since_check(recording_set.rig)
         return (note_of("scan.calibrated_in_this_sitting", hours=change.sitting_hours), *kelvins)
@@ -387,7 +388,7 @@ def check_of_the_day(
     progress: Progress = silent,
     kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Measure the poses of the interim check; () where it does not apply to the day of the scan.
+    """Measure the poses of the interim check; () if its pictures are not of the day of the scan.
 
     They are looked for in the folder `kept` first, as by `measure_check`.
 
@@ -410,7 +411,7 @@ def measure_check(
     beside: SecondProcess | None = None,
     kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Find target and stripes in every pose of the interim check; the process `beside` takes a share.
+    """Find plane target and stripes in every pose of the interim check; the process `beside` takes a share.
 
     Those in the folder `kept` are taken if they are of these very pictures; else they are kept there.
 

@@ -43,7 +43,7 @@ LEAST_PART = 0.05
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Compared:
-    """Comparison, its summary, and the other surface's points (M, 3) in the frame of the scan."""
+    """Comparison of a scan with another surface, in full and in summary, and with its points (M, 3) as aligned."""
 
     comparison: Comparison
     summary: ComparisonFile
@@ -63,7 +63,7 @@ class _Other:
 def compare_surfaces(
     source: Path, other: Path, align: str, scales: ComparisonScales, progress: Progress = silent
 ) -> Compared:
-    """Compare a scan with another surface.
+    """Compare a scan with another surface, point by point, after aligning them by `align`.
 
     Parameters
     ----------
@@ -119,7 +119,9 @@ def compare_step(
     to: Path | None = None,
     progress: Progress = silent,
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare, and write the comparison among the results of `source`, or into `to`; returns the files by their keys.
+    """Compare a scan with the surface in `other` and write the comparison into `to` (None: beside `source`).
+
+    Returns the comparison and its files by their keys.
 
     Raises
     ------

@@ -36,7 +36,7 @@ from core.report.content import ReportContent
 
 
 def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
-    """Choose the frame in which the geometry among `results` is exported: the part's own where it is known and wanted.
+    """Choose the frame of coordinates for exported geometry: the part's own if it is known, or the camera's.
 
     Raises
     ------
@@ -69,7 +69,7 @@ class Results:
 
     @cached_property
     def frame(self) -> ViewFrame:
-        """Frame in which geometry is written; InputError if the file with the part's pose is damaged."""
+        """Coordinate frame in which geometry is written; InputError if the file with the part's pose is damaged."""
         return frame_of(self.folder, in_camera_frame=self._in_camera_frame)
 
     @cached_property
@@ -84,7 +84,7 @@ class Results:
 
     @property
     def camera_time(self) -> datetime:
-        """Time when the camera was calibrated, or else when anything was last measured with it."""
+        """Time when the camera was calibrated or, if not known, when anything was last measured with it."""
         record = read_run(self.folder / FILES["run"])
         return record.made_at.get("camera", record.measured_at)
 
@@ -222,7 +222,7 @@ WRITERS: Mapping[str, Write] = {
 
 
 def export_kind(name: str) -> ExportKind:
-    """Find the kind of that name; InputError that names all kinds if there is none."""
+    """Find the kind of export that is called `name`; InputError that names all kinds if there is none."""
     if name not in EXPORTS:
         raise InputError(
             Message("export.no_such_format", 'there is no format "{name}"', name=name),
@@ -233,5 +233,5 @@ def export_kind(name: str) -> ExportKind:
 
 
 def write_export(kind: str, results: Results, path: Path, progress: Progress = silent) -> None:
-    """Write the export of that kind to `path`; InputError if there is none, or a result is missing."""
+    """Write the results as the export called `kind` to `path`; InputError if there is none, or a result is missing."""
     WRITERS[export_kind(kind).name](results, path, progress)

@@ -52,7 +52,7 @@ MATTERS = 1.1
 
 
 def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
-    """Measure the thickness of the cloud in the folder and write gauge.json.
+    """Measure the thickness of the part in the scan's cloud and write gauge.json.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 
 
 def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
-    """Correct the thickness to 20 °C, by the stated or assumed temperature of the part, and note what is assumed."""
+    """Correct a measured thickness to 20 °C, by the part's stated or assumed temperature, and note what is assumed."""
     temperature = temperature_of(part)
     if temperature is not None:
         gauge = adjusted(gauge, *correction_to_reference(gauge.thickness_mm, temperature))
@@ -101,7 +101,7 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
 
 
 def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
-    """Note that the rig was not checked on the day, if U is much larger by what may have changed."""
+    """Make a note if U is much larger because the rig was not checked on the day of the scan; () if not."""
     change = max((row.u_mm for row in gauge.budget if row.source in CHANGES), default=0.0)
     if MATTERS**2 * (gauge.u_mm**2 - change**2) >= gauge.u_mm**2:
         return ()
@@ -119,9 +119,9 @@ def _no_thickness() -> Iterator[None]:
 
 @contextmanager
 def single_face_as_cause(scan: ScanFile, cloud: Cloud) -> Iterator[None]:
-    """Name, for an error in this block, one face only in view as the cause.
+    """Let an OneFace error in this block stand if the cloud holds enough fan light, else make it an InputError.
 
-    If `cloud` has enough of the fan's light.
+    Only as OneFace it names one face in view as the cause.
     """
     try:
         yield
@@ -133,7 +133,7 @@ def single_face_as_cause(scan: ScanFile, cloud: Cloud) -> Iterator[None]:
 
 
 def reasons_of_no_faces(scan: ScanFile, cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
-    """Yield the possible reasons why no faces are found in the `cloud`: one row for each cause that holds.
+    """Yield the reasons that may explain why no two parallel faces are found in the `cloud`, one a cause.
 
     `bends` (N, 3, 3) in 1/mm are those of the fan's lines, None where they are not known.
     """
@@ -245,25 +245,25 @@ def _unsure(scan: ScanFile) -> Iterator[Reason]:
 
 
 def point_errors(scan: ScanFile) -> PointErrors:
-    """Make the correlated errors of a scan's points."""
+    """Make the model of how the errors of a scan's points hang together, from what scan.npz holds."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
     return replace(errors, facts=scan.facts, light=scan.part_light)
 
 
 class Thickness(NamedTuple):
-    """Result of looking for a thickness: the gauge, or the reason why there is none."""
+    """Result of measuring a thickness: the gauge, or the error that tells why there is none."""
 
     gauge: GaugeResult | None
     problem: InputError | None = None
 
     @property
     def note(self) -> Message | None:
-        """Note on why there is no thickness; None if there is."""
+        """Note on why there is no thickness; None if one was measured."""
         return None if self.problem is None else note_of("gauge.none_measured", reason=self.problem.message)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness:
-    """Measure the thickness as `gauge_step`; where there is none, write the reason to run.json and raise nothing."""
+    """Measure the thickness and write gauge.json; if that fails, write the reason to run.json and return it."""
     try:
         return Thickness(gauge_step(work, progress))
     except InputError as error:
@@ -275,7 +275,7 @@ def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness
 
 
 def missing_thickness(rig: Rig, why_not: Why | None) -> Why | None:
-    """Give the reason why a thickness that the rig asks for was not found; None if none is asked for, or it was."""
+    """Return `why_not`, the reason for no thickness, if the rig asks for one; None if it does not, or there is one."""
     return None if rig.gauge is None else why_not
 
 

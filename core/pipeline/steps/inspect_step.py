@@ -31,7 +31,7 @@ from core.scan.surface.fused_surface import Mesh
 
 @dataclass(frozen=True, eq=False, slots=True)
 class InspectedScan:
-    """Scan on which a plan is measured.
+    """Scan to be inspected: its cloud and mesh, how its errors hang together, and what is known of its part.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def inspect(
     progress: Progress = silent,
     previous: Inspection | None = None,
 ) -> Inspection:
-    """Measure a plan on a scan; `nominals` is the folder of the nominal surfaces.
+    """Measure the features of a plan on a scan; `nominals` is the folder of the nominal surfaces it names.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def inspect_step(
     out: Path | None = None,
     progress: Progress = silent,
 ) -> tuple[Inspection, Path | None]:
-    """Inspect a scan and write inspection.json: into `out`, or among the results of a folder that was given.
+    """Measure the features of a plan on a scan and write inspection.json, into `out` or among its results.
 
     Parameters
     ----------

@@ -43,7 +43,9 @@ def stored_features(
     camera: Camera,
     progress: Progress = silent,
 ) -> ScanFeatures | None:
-    """Read the stored features of these pictures, settings and camera, from an earlier scan.npz or the recording.
+    """Read features stored in an earlier scan.npz or with the recording, if of these pictures, settings and camera.
+
+    None if there are none.
 
     Takes the hashes of the pictures, as reading them would, if features were kept.
     """
@@ -64,7 +66,7 @@ def _features_in(path: Path, key: str) -> ScanFeatures | None:
 
 
 def keep_features(pictures: PictureReader, settings: Options, camera: Camera, features: ScanFeatures) -> None:
-    """Store the features of a recording beside its frames; the hashes of its pictures must have been taken.
+    """Store the features of a recording beside its frames; its pictures must all have been read, for their hashes.
 
     Raises
     ------
@@ -76,9 +78,9 @@ def keep_features(pictures: PictureReader, settings: Options, camera: Camera, fe
 
 
 def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> str:
-    """Compute the key of all that the features of a scan rest on, in 16 hex digits; hashes must have been taken.
+    """Compute a key of 16 hex digits of all that a scan's features rest on: pictures, settings and camera.
 
-    The camera's distortion is one of it: centrelines are crossed without it.
+    The hashes of the pictures must have been taken.
     """
     recording_set = pictures.recording_set
     rests_on = {
@@ -104,7 +106,7 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 
 
 def store_views(project_folder: Path, project: Project, pictures: PictureReader, seen: SeenViews) -> None:
-    """Store the views found in the pictures of the camera's target; skipped in a folder that cannot be written to."""
+    """Store in the project the views found in its pictures of the camera target; nothing if it cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
         write_views(_path(project_folder, "camera"), _views_key(project, pictures), seen)
@@ -113,7 +115,10 @@ def store_views(project_folder: Path, project: Project, pictures: PictureReader,
 def stored_views(
     project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
 ) -> SeenViews | None:
-    """Read the stored views, if they are of these pictures and this target."""
+    """Read the views of the camera target stored in the project, if they are of these pictures and this target.
+
+    None if they are not, or there are none.
+    """
     pictures.take_hashes(pictures.recording_set.camera, progress)
     try:
         return read_views(_path(project_folder, "camera"), _views_key(project, pictures))
@@ -122,7 +127,7 @@ def stored_views(
 
 
 def store_poses(project_folder: Path, project: Project, pictures: PictureReader, poses: Sequence[PoseFeatures]) -> None:
-    """Store the poses found in the pictures of the plate; skipped in a folder that cannot be written to."""
+    """Store in the project the poses found in its pictures of the plate; nothing if it cannot be written to."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
         write_poses(_path(project_folder, "planes"), _poses_key(project, pictures), poses)
@@ -131,7 +136,7 @@ def store_poses(project_folder: Path, project: Project, pictures: PictureReader,
 def stored_poses(
     project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
 ) -> tuple[PoseFeatures, ...]:
-    """Read the stored poses, if they are of these pictures, this plate and this camera; else nothing."""
+    """Read the poses stored in the project, if they are of these pictures, this plate and this camera; else ()."""
     pictures.take_hashes(_pose_pictures(pictures.recording_set), progress)
     try:
         return read_poses(_path(project_folder, "planes"), _poses_key(project, pictures))

@@ -32,9 +32,9 @@ FORMATS = tuple(_WRITE)
 
 @dataclass(frozen=True, slots=True)
 class MeshOptions:
-    """Options of preparing a mesh: `fill_mm` fills holes up to that span; `triangles` or `error_mm` decimate.
+    """Options of preparing a mesh: `fill_mm`, the largest hole filled; `triangles` or `error_mm`, how far to decimate.
 
-    0: not.
+    0: not at all.
     """
 
     fill_mm: float = 0.0
@@ -43,7 +43,7 @@ class MeshOptions:
 
 
 def prepared_mesh(mesh: Mesh, options: MeshOptions, progress: Progress = silent) -> Decimated:
-    """Prepare the mesh by these options, with the error that decimation made.
+    """Fill the holes of a mesh and decimate it by `options`; return it with the error that decimation made.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def mesh_step(
     *,
     in_camera_frame: bool = False,
 ) -> tuple[Decimated, dict[str, Path]]:
-    """Write the surface among `results` into the folder `to` in each of the FORMATS named; mesh.ply stays as it is.
+    """Write the prepared surface among `results` into the folder `to`, in each of the FORMATS named; mesh.ply stays.
 
     Parameters
     ----------

@@ -22,9 +22,9 @@ from core.pipeline.steps.workspace import RIDGES, Workspace
 def ridge_of(
     pictures: PictureReader, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
 ) -> NDArray[np.uint8] | None:
-    """Draw the ridge strength (H, W) for `stripe` of a pose without a straight stripe, the strongest white.
+    """Draw (H, W) where a pose without a straight stripe looks most like one of `stripe`, the likest place white.
 
-    None where one was found, or no target.
+    None where a stripe was found, or no target.
 
     Raises
     ------
@@ -46,7 +46,9 @@ def write_ridges(
     camera: Camera,
     stripe: StripeSettings | None,
 ) -> Message | None:
-    """Write these pictures into the folder RIDGES of the results, in place of older ones; returns a note on them.
+    """Write a picture of ridge strength of each pose without a stripe into the folder RIDGES, in place of older ones.
+
+    Returns a note on them, None if there are none.
 
     Raises
     ------
@@ -67,7 +69,7 @@ def write_ridges(
 
 
 def also_look_at_ridges(error: InputError) -> InputError:
-    """Add to the error that ended a calibration the advice to look at the pictures written."""
+    """Add to the error that ended a calibration the advice to look at the pictures in the folder RIDGES."""
     todo = Message(
         "advice.look_at_ridges",
         "look at the pictures in {folder}, where what looks most like a stripe is white; {advice}",

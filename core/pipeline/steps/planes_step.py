@@ -106,7 +106,9 @@ def measure_poses(
     stripe: StripeSettings | None = None,
     beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Find target and stripes in every pose, a few at a time; stripes of this width and contrast if they are stated.
+    """Find plane target and stripes in every pose; `stripe` is their width and contrast (None: found by itself).
+
+    A few are read at a time.
 
     The process `beside` takes some of them.
 
@@ -229,7 +231,7 @@ def solve_planes(
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
 ) -> FanCalibration:
-    """Calibrate the fan from all poses, without those left out by hand.
+    """Calibrate the fan's light planes from all poses but those left out by hand.
 
     The camera's `calibration` is needed where the settings have the camera adjusted; without it, it is not. What it
     says of the shape of a target that both steps use holds here as well.
@@ -249,20 +251,20 @@ def solve_planes(
 
 
 def with_acquisition(calibration: FanCalibration, recording_set: RecordingSet) -> FanCalibration:
-    """Add to the calibration by which camera and when its pictures were taken, according to their log."""
+    """Add to a fan's calibration by which camera and when its pictures were taken, as their log tells."""
     log = recording_set.log("planes")
     taken = log.acquisition([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
     return replace(calibration, taken=taken, notes=(*calibration.notes, *log.notes))
 
 
 def fan_options(rig: Rig, settings: Options) -> FanOptions:
-    """Make the options of the fan's calibration, from the rig and whether its planes may be held to one pencil."""
+    """Make the options of calibrating the fan: lines, angle, target, and whether its planes may share one line."""
     constrained: Constrained = "auto" if settings.constrain_fan else "never"
     return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
 def plane_run_settings(rig: Rig, settings: Options) -> dict[str, object]:
-    """Make the settings of the fan's calibration for run.json."""
+    """Collect the settings that a fan was calibrated with, for run.json."""
     fan = fan_options(rig, settings)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}

@@ -48,7 +48,7 @@ _REPLACED = ("cloud", "scan", "mesh", "report", *resting_on("cloud"))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MeasuredProfiles:
-    """Results of the profile step in memory; the same is in its files."""
+    """Results of measuring by the fan's profiles, in memory; its files hold the same."""
 
     gauge: GaugeResult
     pictures: tuple[PictureStep, ...]
@@ -61,7 +61,7 @@ def profile_step(
     tilt: StatedTilt | None = None,
     progress: Progress = silent,
 ) -> MeasuredProfiles:
-    """Measure a thickness by the step on the fan's profiles, with the calibration in camera.json and planes.json.
+    """Measure a thickness as the height of a step in pictures of the fan alone, with camera.json and planes.json.
 
     Every picture of the set's scan shows the fan alone and the part; with a reference, that is the one picture.
 

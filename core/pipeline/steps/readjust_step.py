@@ -38,7 +38,7 @@ def propose_readjustment(
     progress: Progress = silent,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> ProposedReadjustment:
-    """Compute how camera and fan would be re-adjusted by the pictures of the check; nothing is written.
+    """Compute how camera and fan would be re-adjusted by the pictures of the interim check; nothing is written.
 
     `stripe` and `poses` are as `core.pipeline.steps.check_step.check_step` has them.
 
@@ -108,7 +108,7 @@ def readjust_step(
     progress: Progress = silent,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> ProposedReadjustment:
-    """Re-adjust camera and fan by the pictures of the check: planes.json holds both, and a record of what was done.
+    """Re-adjust camera and fan by the pictures of the interim check, and write both and a record into planes.json.
 
     The file before is kept as planes-calibrated.json; what was measured with it goes.
 
@@ -127,7 +127,7 @@ def readjust_step(
 
 
 def undo_readjustment(work: Workspace) -> None:
-    """Put planes.json back as it was calibrated.
+    """Put planes.json back as it was before camera and fan were re-adjusted.
 
     Raises
     ------

@@ -83,7 +83,7 @@ Said = Callable[[ReportContent], ReportContent]
 def report_step(
     work: Workspace, progress: Progress = silent, said: Said | None = None, beside: SecondProcess | None = None
 ) -> Path:
-    """Write the results in the folder into report.pdf; `said` adds the user's texts.
+    """Write the results in the folder into report.pdf; `said` adds the user's texts. Return its path.
 
     The process `beside` draws it, if there is one.
 
@@ -103,14 +103,14 @@ def report_step(
 
 
 def prepare_report(_: object, /, *, progress: Progress = silent) -> None:
-    """Import what draws and typesets a report, for a process that has nothing else to do meanwhile."""
+    """Import the modules that draw and typeset a report, in a process that is idle until there is one."""
     from core.report.pdf import prepare
 
     prepare()
 
 
 def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> bytes:
-    """Draw the report as a PDF; what draws and typesets it is imported for it alone."""
+    """Draw a report of `content` and return the PDF's bytes; the modules needed are imported only here."""
     from core.report.pdf import build_report
 
     return build_report(content, progress)
@@ -119,7 +119,10 @@ def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> by
 def report_content(
     work: Workspace, pictures: PictureReader, progress: Progress = silent, said: Said | None = None
 ) -> ReportContent:
-    """Collect the content of the report; InputError as `report_step`."""
+    """Collect the content of the report from the results and the pictures they come from.
+
+    InputError as `report_step`.
+    """
     progress("report", 0, 1)
     content = results_content(work.out, work.part, work.record())
     rig = work.recording_set.rig
@@ -334,7 +337,7 @@ _AGAIN = Message(
 
 
 def with_inspection(content: ReportContent, out: Path) -> ReportContent:
-    """Add every characteristic of inspection.json in `out` to the content, if there is one.
+    """Add every characteristic in the inspection.json of `out` to a report's content, if there is such a file.
 
     Raises
     ------

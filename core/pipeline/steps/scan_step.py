@@ -34,7 +34,7 @@ def scan_step(
     seen: Callable[[], SeenScan] | None = None,
     beside: SecondProcess | None = None,
 ) -> Measured:
-    """Measure the surface with the calibration in camera.json and planes.json.
+    """Measure the surface in a scan with the calibration in camera.json and planes.json, and write its results.
 
     Parameters
     ----------

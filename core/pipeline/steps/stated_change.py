@@ -20,7 +20,7 @@ _HOUR = timedelta(hours=1)
 
 
 class StatedChange(NamedTuple):
-    """Stability of a rig since its calibration, as stated or assumed."""
+    """Stability of a rig since its calibration by what is stated of it, or assumed where it is not."""
 
     stability: Stability | None
     """None: nothing is stated, and the default will do."""
@@ -31,16 +31,16 @@ class StatedChange(NamedTuple):
 
     @property
     def known(self) -> Stability | None:
-        """Stability, where nothing of it is assumed; else None."""
+        """Stability of the rig if all of it is stated; None if a part of it is assumed, or nothing is stated."""
         return None if self.assumed else self.stability
 
     @property
     def guess(self) -> Stability:
-        """Stability to begin with where something is assumed."""
+        """Stability to begin with where a part of it is assumed; the default where all is stated or nothing is."""
         return self.stability if self.assumed and self.stability is not None else DEFAULT_STABILITY
 
     def notes(self, rig: Rig, stability: Stability) -> tuple[Message, ...]:
-        """Note what is assumed of the rig, its temperatures and times, if the `stability` was used in the end."""
+        """Make notes on what is assumed of the rig, given the `stability` that was used; () if nothing is."""
         if self.since is None or (rig.drift == NO_DRIFT and rig.stability is not None):
             return ()
         if rig.drift == NO_DRIFT:
@@ -50,13 +50,13 @@ class StatedChange(NamedTuple):
 
 
 def change_at_scan(recording_set: RecordingSet, fan: FanCalibration) -> StatedChange:
-    """Compute the stated change from the calibration until the frames were recorded."""
+    """Compute the stability of a rig, stated or assumed, from its calibration until the frames were recorded."""
     when = taken_at(recording_set.frames) if recording_set.frames else None
     return _since_calibration(recording_set, recording_set.rig.air.scanned, when, fan)
 
 
 class Sitting(NamedTuple):
-    """Sitting in which planes were calibrated and the scan recorded."""
+    """Uninterrupted work in which planes were calibrated and the scan recorded: its hours, and the change meanwhile."""
 
     hours: float
     """From the first picture of the planes to the last frame."""
@@ -65,7 +65,7 @@ class Sitting(NamedTuple):
 
 
 def sitting_of(rig: Rig, fan: FanCalibration, scanned: Acquisition | None) -> Sitting | None:
-    """Find the sitting in which planes were calibrated and frames recorded; None where it is not one, or not known.
+    """Find whether planes were calibrated and frames recorded in one sitting; None if they were not, or not known.
 
     What had changed before is in the planes' own pictures, as it is in those of a check of the day. `scanned` says by
     which camera and when the frames were taken.
@@ -78,19 +78,19 @@ def sitting_of(rig: Rig, fan: FanCalibration, scanned: Acquisition | None) -> Si
 
 
 def change_at_check(recording_set: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:
-    """Compute the stated change from the calibration until the pictures of a check were taken."""
+    """Compute the stability of a rig, stated or assumed, from its calibration until a check taken at `when`."""
     return _since_calibration(recording_set, recording_set.rig.air.checked, when, fan)
 
 
 def change_since_check(recording_set: RecordingSet, checked: datetime) -> Stability:
-    """Compute the change from a check of the day to the frames; 0 where no drift is stated."""
+    """Compute how much the rig may have changed from a check on the day to the scan; 0 without stated drift."""
     air = recording_set.rig.air
     hours = 0.0 if not recording_set.frames else (taken_at(recording_set.frames) - checked) / _HOUR
     return recording_set.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
 
 
 def notes_since_check(rig: Rig) -> tuple[Message, ...]:
-    """Note if the warming between a check of the day and the scan is assumed, and matters."""
+    """Make a note if the warming between a check of the day and the scan is assumed, and matters; else ()."""
     known = rig.air.checked is not None and rig.air.scanned is not None
     if known or not rig.drift.per_kelvin.over_default.any():
         return ()

@@ -36,10 +36,10 @@ _CAMERAS, _REFERENCE = (
 
 
 def compare_targets(pictures: PictureReader, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
-    """Compute the ratio of the targets' sizes over the one stated, None where no picture shows both; with notes.
+    """Measure the ratio of the sizes of two targets over the one stated, with notes; None if no picture shows both.
 
-    The other one is the reference target if rig.toml states one, else the camera's. None as well where it does not say
-    what that is.
+    The plane target's size over that of the reference target if rig.toml states one, else the camera's. None as well
+    where it does not say what that is.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _without(seen: TargetView, picture: Picture) -> Picture:
 def with_compared_sizes(
     fan: FanCalibration, pictures: PictureReader, camera: Camera
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
-    """Widen the scale of the fan by all that the sizes of the targets disagree, and note it.
+    """Widen the scale uncertainty of the fan by all that pictures of two targets find their sizes off; with notes.
 
     A plane target of which nothing is stated has the size that its pictures beside a target of a stated one give:
     uncertain by that one, by the pictures, and by all that they find, which nothing corrects.
@@ -129,5 +129,5 @@ def with_compared_sizes(
 
 
 def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
-    """Set the standard uncertainty of the size of the fan's target, as a share: it is no longer assumed."""
+    """Set the relative standard uncertainty of the size of the fan's target, which is then no longer assumed."""
     return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False)

@@ -27,17 +27,17 @@ _WORST_FIRST = ("failed", "doubtful", "passed")
 
 
 def history_name(rig: Rig, calibration_id: str) -> str:
-    """Return the name of a rig's history: that of the rig, else the calibration."""
+    """Return the name of a rig's history of checks: the rig's name, else the id of its calibration."""
     return rig.name or calibration_id
 
 
 def history_of(rig: Rig, calibration_id: str) -> RigHistory:
-    """Read every check of a rig; InputError if the file is damaged."""
+    """Read the history of all checks of a rig; InputError if the file is damaged."""
     return read_history(history_name(rig, calibration_id))
 
 
 def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
-    """Collect the facts of calibrations and day of the recording that decide whether anything is proven.
+    """Collect the facts, of calibrations and checks, that decide whether results of this recording prove conformity.
 
     The check nearest in time counts, before the recording or after it. What is not stated has no limit. That the
     target's points lie off alike in all poses counts no more once U contains what an artefact has left possible.
@@ -67,7 +67,7 @@ def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
 
 
 def facts_of_calibration(calibration: Calibration) -> ScanFacts:
-    """Collect the facts of the calibrations of camera and planes that decide whether anything is proven."""
+    """Collect the facts of the calibrations that decide whether results measured with them prove conformity."""
     camera, fan = calibration.camera, calibration.fan
     return ScanFacts(
         camera_unsettled=None if camera.converged is None else not camera.converged,
@@ -78,7 +78,7 @@ def facts_of_calibration(calibration: Calibration) -> ScanFacts:
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
-    """Reduce the uncertainty of the plane target's size as far as a known artefact has confirmed it.
+    """Reduce the uncertainty of the plane target's size as far as a measured artefact has confirmed it.
 
     That is one whose size is not stated, or whose points lie off alike in all poses. The artefact measured nearest in
     time counts, if it passed and that is no longer ago than `[validity]` lets a check hold. The size is then uncertain
@@ -140,7 +140,7 @@ def _as_check(known: Readjustment, calibration_id: str) -> PastCheck:
 
 
 def stated_validity(rig: Rig) -> tuple[Message, ...]:
-    """Note where no limit is stated."""
+    """Make a note where no limit is stated of how long a calibration or a check holds; () if both are."""
     if rig.validity.calibration_days is not None and rig.validity.check_days is not None:
         return ()
     return (note_of("validity.not_stated"),)

@@ -44,25 +44,25 @@ of the recording set alone: no result rests on it, nor it on any, and it is ther
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Calibration:
-    """Camera and fan of a scan, and the id of the two."""
+    """Calibrated camera and fan that a scan is measured with, and the id of the two."""
 
     camera: CameraCalibration
     fan: FanCalibration
 
     @property
     def id(self) -> str:
-        """Id written into everything measured with this calibration."""
+        """Id of camera and fan together, written into everything measured with them."""
         return f"{camera_id(self.camera.camera)}-{planes_id(self.fan.fan)}"
 
 
 def planes_of(calibration_id: str) -> str:
-    """Return the id of the fan within that of a calibration."""
+    """Return the part of a calibration's id that is the id of the fan."""
     return calibration_id.rpartition("-")[2]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StepLog:
-    """Entries of a step for run.json, and the folder of its results until all of them are there."""
+    """Settings, notes and frames of a step for run.json, and the folder of its results until they are complete."""
 
     beside: Path
     pictures: PictureReader
@@ -74,7 +74,7 @@ class StepLog:
     frames: list[FrameRecord] = field(default_factory=list)
 
     def path(self, name: str) -> Path:
-        """Return the path to which the step writes the result `name`, a key of FILES."""
+        """Return the path to which the step writes its result called `name`, a key of FILES."""
         return self.beside / FILES[name]
 
 
@@ -92,21 +92,21 @@ class Workspace:
 
     @classmethod
     def open(cls, recording_set: RecordingSet, out: Path, part: str = "", kept: Path | None = None) -> Workspace:
-        """Make the folder if it is missing; InputError if nothing can be written there."""
+        """Make a workspace and its folder, if that is missing; InputError if nothing can be written there."""
         require_outside(recording_set, out)
         return cls(recording_set, make_folder(out), part, kept)
 
     def path(self, name: str) -> Path:
-        """Return the path of the result `name`, a key of FILES."""
+        """Return the path of the result called `name`, a key of FILES."""
         return self.out / FILES[name]
 
     def clear(self) -> None:
-        """Remove the results of an earlier run: old and new are never mixed, even after an interruption."""
+        """Remove all results of an earlier run, so that old and new are never mixed, even after an interruption."""
         self.put_ridges({})
         put_results(self.out, None, CLEARED)
 
     def put_ridges(self, ridges: Mapping[str, NDArray[np.uint8]]) -> None:
-        """Write pictures (H, W), by the names of their poses, in place of all older ones in RIDGES.
+        """Write pictures (H, W), by the names of their poses, into the folder RIDGES in place of all older ones.
 
         Raises
         ------
@@ -129,18 +129,18 @@ class Workspace:
         return {name: self.path(name) for name in FILES if self.path(name).exists()}
 
     def calibration(self) -> Calibration:
-        """Read camera.json and planes.json; InputError if they are missing, wrong, or not of each other."""
+        """Read camera.json and planes.json; InputError if one is missing or wrong, or they do not belong together."""
         return read_calibration(self.out)
 
     def record(self) -> RunRecord:
-        """Read run.json so far; a fresh record where there is none."""
+        """Read run.json as it is so far; an empty record where there is none."""
         if self.path("run").exists():
             return read_run(self.path("run"))
         return RunRecord(self.recording_set.name, self.part or self.recording_set.name, _now())
 
     @contextmanager
     def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:
-        """Time a step and, if it succeeds, put its results in place and add it to run.json.
+        """Time the step in this block and, if it succeeds, put its results in place and add it to run.json.
 
         Whoever cuts it off leaves the old results; whoever cuts off its very end leaves results that belong together.
 
@@ -172,7 +172,7 @@ class Workspace:
 
 @contextmanager
 def staged(out: Path, step: str, gone: Collection[str] = ()) -> Iterator[Path]:
-    """Make a folder for a step's new results; if all goes well, they replace the old ones in `out`.
+    """Make a folder for a step's new results; if the block succeeds, they replace the old ones in `out`.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def _renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> No
 
 @contextmanager
 def made_beside(out: Path) -> Iterator[Path]:
-    """Make a folder among the results in `out` for new ones; it is removed in the end with all that is left in it.
+    """Make a folder inside `out` for new results; it is removed at the end of the block with all that is left in it.
 
     Raises
     ------
@@ -262,7 +262,7 @@ def _same(one: Path, other: Path) -> bool:
 
 
 def read_calibration(out: Path) -> Calibration:
-    """Read the calibration among the results in `out`; InputError as :meth:`Workspace.calibration`."""
+    """Read camera.json and planes.json in `out`; InputError if one is missing or wrong, or they do not match."""
     camera = read_camera(out / FILES["camera"])
     fan = read_planes(out / FILES["planes"], camera.camera)
     return Calibration(fan.camera_used(camera), fan)

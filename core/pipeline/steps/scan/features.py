@@ -27,7 +27,7 @@ def scan_features(
     earlier: Path | None = None,
     seen: Callable[[], SeenScan] | None = None,
 ) -> ScanFeatures:
-    """Extract centrelines and crossings of all pictures of a scan, or read the stored ones.
+    """Extract centrelines and crossings of all pictures of a scan, or read them where they were stored before.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def scan_features(
 
 
 def crossed_scan(looked: SeenScan, camera: Camera, progress: Progress = silent) -> ScanFeatures:
-    """Compute the features of a scan from the centrelines of its pictures."""
+    """Cross the centrelines extracted from a scan's pictures, as `camera` sees them: the features of the scan."""
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
     notes, faults = (*looked.notes, *features.notes), (*looked.faults, *features.faults)
     return replace(features, notes=notes, faults=faults, too_fine_for_mosaic=looked.too_fine_for_mosaic)

@@ -31,14 +31,14 @@ from core.scan.scan_evidence import scan_evidence
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Solved:
-    """Solved scan, the features last used, and the calibration it was solved with."""
+    """Solved scan, with the features it was last solved from and the calibration it was solved with."""
 
     features: ScanFeatures
     scan: ScanResult
     calibration: Calibration
 
     def evidence(self, deviations: Sequence[Deviation]) -> Evidence:
-        """Compute the evidence of the scan about K deviations of camera and fan."""
+        """Compute what the scan's misclosures say about K deviations of camera and fan, as normal equations."""
         return scan_evidence(
             self.features, self.scan, self.calibration.camera.camera, self.calibration.fan.fan, deviations
         )
@@ -46,9 +46,9 @@ class Solved:
 
 @dataclass(frozen=True, slots=True)
 class SectionChange:
-    """Change of the section of the fan's stripes since its calibration, its notes and its effect.
+    """Change of the section of the fan's stripes since its calibration, with notes and the deviation it means.
 
-    `surely` is None where it is not known. There are notes and deviations only where it is so.
+    `surely` is None where it is not known. Notes and deviations are there only where it has surely changed.
     """
 
     surely: bool | None
@@ -58,7 +58,7 @@ class SectionChange:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Judgement:
-    """Judgement of a scan: its uncertainty and the facts that decide what it proves.
+    """Judgement of a solved scan: its uncertainty, causes of misfit, and the facts that decide what it can prove.
 
     Parameters
     ----------
@@ -83,14 +83,14 @@ class Judgement:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the most likely cause, on what changed, and why nothing measured is proof."""
+        """Notes on the most likely cause of misfit, on what has changed, and on why nothing measured is proof."""
         return (*self.likely, *self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
 
 
 def solved_scan(
     features: ScanFeatures, calibration: Calibration, options: ReconstructOptions, progress: Progress
 ) -> Solved:
-    """Solve a scan, and again where its surface bends.
+    """Locate a scan's sweeps and triangulate its points, twice where its surface bends.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def judged_scan(
     method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> Judgement:
-    """Compute the uncertainty of a scan from its calibrations and what has changed since, and find causes of misfit.
+    """Compute the uncertainty of a solved scan from calibration and later changes, and find the causes of its misfit.
 
     Parameters
     ----------
@@ -168,7 +168,10 @@ def facts_of(
     too_fine_for_mosaic: bool | None,
     scan: ScanResult | None = None,
 ) -> ScanFacts:
-    """Collect the facts of the planes, the day and the pictures; within one picture nothing moves."""
+    """Add to the facts `of_the_day` those of the change since calibration, of the pictures and of the solved scan.
+
+    Without a `scan`, one picture was measured: within it nothing moves.
+    """
     return replace(
         of_the_day,
         moved=False if scan is None else scan.moved,
@@ -184,14 +187,14 @@ def facts_of(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StoredPoses:
-    """Stored poses of a fan's calibration, none where they are not stored, and a note if their file is damaged."""
+    """Stored poses of a fan's calibration, () where none are stored, and a note if their file is damaged."""
 
     poses: tuple[PoseFeatures, ...] = ()
     notes: tuple[Message, ...] = ()
 
     @property
     def stripes(self) -> list[Sequence[Centreline]]:
-        """Stripes on the plate of each pose."""
+        """Centrelines of the stripes on the plate, pose by pose."""
         return [pose.centrelines for pose in self.poses]
 
 
@@ -215,9 +218,9 @@ def _planes_of(calibration: Calibration) -> Iterator[str]:
 def section_since(
     calibration: Calibration, poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline]
 ) -> SectionChange:
-    """Compare the skewness of the stripes of the `fan` with that in the `poses` of its calibration.
+    """Judge whether the skewness of the `fan`'s stripes in a scan has changed from that in its calibration's `poses`.
 
-    A re-adjusted fan rests on stripes of the day.
+    A re-adjusted fan rests on stripes of the day: it has not.
     """
     if calibration.fan.readjusted is not None:
         return SectionChange(surely=False)

@@ -27,7 +27,7 @@ def notes_on_scan(
     light: PartLight | None,
     log: FolderLog,
 ) -> tuple[Message, ...]:
-    """Collect all notes on a scan, the gravest first.
+    """Collect all notes on a scan, the gravest first, from its solution, judgement, calibration and recording.
 
     `kept` are the poses of its calibration, `light` is that on its part, `log` that of its recording.
     """
@@ -51,19 +51,19 @@ def notes_on_scan(
 
 
 def notes_on_focus(kept: StoredPoses, fan: Sequence[Centreline]) -> tuple[Message, ...]:
-    """Note if the fan's stripes are much wider than in its calibration; none where its poses are not stored."""
+    """Make a note if the fan's stripes are much wider than in its calibration; () if not, or no poses are stored."""
     then, now = stripe_width(line for lines in kept.stripes for line in lines), stripe_width(fan)
     note = None if then is None or now is None else other_focus(now, then)
     return () if note is None else (note,)
 
 
 def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Message, ...]:
-    """Note if nothing states how the camera reads its rows out, and the sweeps of a steady hand do not show it."""
+    """Make a note that the shutter is assumed to be global, if no row time is stated and sweeps do not show one."""
     if row_time_us is not None or scan.read_out.moves:
         return ()
     return (note_of("scan.shutter_assumed", field=Field("[camera] row_time_us")),)
 
 
 def notes_on_lost_frames(lost: int) -> tuple[Message, ...]:
-    """Note if frames were lost while a live scan was recorded."""
+    """Make a note if frames were lost while a live scan was recorded; () if none was."""
     return (note_of("scan.frames_lost", n=lost),) if lost else ()

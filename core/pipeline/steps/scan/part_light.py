@@ -20,7 +20,7 @@ Plates = Sequence[tuple[Pose, Sequence[Centreline]]]
 
 
 def part_light(solved: Solved, plates: Plates) -> PartLight | None:
-    """Compare the width of stripes on the part with that on the table; None where that is not known."""
+    """Compare the width of laser stripes on the part with that on the table; None where too little is seen to."""
     scan, camera = solved.scan, solved.calibration.camera.camera
     if scan.collapsed:
         return None
@@ -29,7 +29,7 @@ def part_light(solved: Solved, plates: Plates) -> PartLight | None:
 
 
 def plates_of(kept: StoredPoses, calibration: Calibration) -> Plates:
-    """Make the plates of a calibration from the stored features of its pictures.
+    """Collect the pose and the stripes of each plate that a fan was calibrated from, as far as they are stored.
 
     A re-adjustment moves the fan by tenths of a mm: how wide a lens at half a metre blurs stripes is as before.
     """
@@ -38,7 +38,7 @@ def plates_of(kept: StoredPoses, calibration: Calibration) -> Plates:
 
 
 def notes_on_part_light(light: PartLight | None) -> tuple[Message, ...]:
-    """Note if stripes on the part are surely wider than on the table."""
+    """Make a note if stripes on the part are surely wider than on the table; () if not, or not known."""
     if light is None or not light.surely:
         return ()
     return (

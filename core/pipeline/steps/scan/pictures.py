@@ -50,7 +50,7 @@ FEWEST_FOR_QUANTILE = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenScan:
-    """Centrelines of the pictures of a scan, and what its reader has read: a `PictureReader` learns it.
+    """Centrelines of a scan's pictures, with the hashes and channels read, which another `PictureReader` takes over.
 
     `averaged` are the same `lines`, averaged along themselves; `notes`, `faults` and `too_fine_for_mosaic` are those of
     `ScanFeatures`; `reference` is the picture that shows the fan alone, or the first of those it was made from.
@@ -129,7 +129,7 @@ def look_at_scan(
 def begin_looking(
     recording_set: RecordingSet, settings: Options, progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], SeenScan] | None:
-    """Start to extract a scan's centrelines in the process `beside`; returns a function that waits for them.
+    """Start to extract a scan's centrelines in the process `beside`; return a function that waits for them.
 
     None where there is no such process.
     """
@@ -140,7 +140,7 @@ def begin_looking(
 
 
 def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
-    """Convert the options to pictures of these sites, in px of them."""
+    """Convert options given in px of whole pictures to pictures of `sites` of a colour mosaic alone, in px of these."""
     return replace(
         looking,
         sweep_stripe=sites.stripe_of(looking.sweep_stripe),
@@ -151,7 +151,7 @@ def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
 
 
 def of_whole(reference: ReferenceFeatures, sites: Sites, picture: Picture) -> ReferenceFeatures:
-    """Extract what these sites of a whole picture with the fan alone show, in its px."""
+    """Convert what was read from the `sites` of a picture with the fan alone to px of the whole `picture`."""
     return replace(reference, base=picture, fan=sites.in_whole_picture(reference.fan))
 
 
@@ -218,9 +218,9 @@ def stream_frames(
     times: StageTimes | None = None,
     coming: Iterable[Path] | None = None,
 ) -> Iterator[Frame]:
-    """Yield every frame in the order of the recording, or all that are `coming`.
+    """Yield the frames that are used in the order of the recording, or those whose paths are `coming`.
 
-    Those left out by hand are not read.
+    Frames left out by hand are not read.
     """
     recording_set = pictures.recording_set
     if coming is not None:
@@ -237,7 +237,7 @@ def stream_frames(
 
 
 def require_frames(recording_set: RecordingSet, settings: Options) -> None:
-    """Raise InputError if there are no frames, or all are left out by hand."""
+    """Raise InputError if a set has no frames, or all of them are left out by hand."""
     require_scan(recording_set)
     if not used_frames(recording_set, settings):
         raise InputError(
@@ -250,7 +250,7 @@ def require_frames(recording_set: RecordingSet, settings: Options) -> None:
 
 
 def used_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
-    """List the frames that are not left out by hand."""
+    """List the paths of the frames that are not left out by hand."""
     return [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
 
 

@@ -31,7 +31,9 @@ class Measured:
 
 
 def write_measured(log: StepLog, measured: Measured, file: ScanFile, progress: Progress) -> None:
-    """Write cloud, mesh and scan.npz, and remove results of profiles; StageTimes records the time it takes.
+    """Write cloud, mesh and scan.npz of a measured scan, and remove results measured by profiles.
+
+    The time that it takes is recorded where `progress` is a StageTimes.
 
     Raises
     ------
@@ -54,7 +56,7 @@ def scan_file(
     settings: Options,
     light: PartLight | None,
 ) -> ScanFile:
-    """Make the content of scan.npz; the hashes of its pictures must have been taken."""
+    """Collect the content of scan.npz; the pictures must all have been read, for their hashes."""
     shown = _shown(scan.frames)
     mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(

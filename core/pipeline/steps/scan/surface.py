@@ -18,7 +18,10 @@ from core.second_process import SecondProcess
 def begin_surface(
     scanned: tuple[Cloud, tuple[int, int]], progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], tuple[Cloud, Mesh]]:
-    """Start to make the surface in the process `beside`, if any; returns a function that waits for it, or makes it."""
+    """Start to make normals and mesh of a cloud in the process `beside`; return a function that waits for them.
+
+    Without `beside` that function makes them.
+    """
     if beside is None:
         return lambda: make_surface(scanned, progress=progress)
     made = beside.submit(make_surface, scanned, progress)
@@ -26,12 +29,12 @@ def begin_surface(
 
 
 def get_ready(_: None, /, *, progress: Progress = silent) -> None:
-    """Load all that `make_surface` needs, which every process does anew."""
+    """Import and compile what `make_surface` needs by calling it with a small cloud; for an idle process."""
     make_surface(level_patch())  # its progress is nobody's
 
 
 def level_patch() -> tuple[Cloud, tuple[int, int]]:
-    """A few points as `make_surface` takes them: what has to be loaded for them is what any cloud needs."""
+    """Make a small cloud of a level surface and its image size, for calling `make_surface` once ahead."""
     u, v = (axis.ravel().astype(np.float64) for axis in np.meshgrid(np.arange(40, 200, 2), np.arange(40, 160, 2)))
     points = 500.0 * np.column_stack([(u - 160) / 400, (v - 120) / 400, np.ones(u.size)])
     level, none = np.full(u.size, 0.02), np.zeros(u.size, dtype=np.int64)
@@ -39,7 +42,7 @@ def level_patch() -> tuple[Cloud, tuple[int, int]]:
 
 
 def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progress = silent) -> tuple[Cloud, Mesh]:
-    """Compute the normals of a cloud, and its mesh, for pictures of a size (width, height)."""
+    """Compute the normals of a cloud and its mesh; `scanned` is the cloud and the pictures' (width, height)."""
     cloud, image_size = scanned
     cloud = with_normals(cloud, progress=progress)
     surface = with_normals(fuse(cloud, image_size, progress=progress), progress=progress)
