@@ -19,7 +19,7 @@ class Between(NamedTuple):
 
 
 def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message, ...]:
-    """Make one message "between {first} and {second}" of each movement, in order of time; `names` (F,) name the frames.
+    """Make one message "between FRAME and FRAME" of each movement, in order of time; `names` (F,) name the frames.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message
 
 
 def merged_movements(of_light: Sequence[Between], of_crossings: Sequence[Between]) -> tuple[Between, ...]:
-    """Merge movements seen by the fan's light with those seen by crossings, in order; of two that overlap the first.
+    """Merge movements seen by the fan's light with those seen by crossings, in order; the light decides overlaps.
 
     Examples
     --------

@@ -392,7 +392,7 @@ _WORDS = {
 def note_on_causes(
     causes: Causes, facts: ScanFacts, movements: Sequence[Between], names: Sequence[str]
 ) -> tuple[Message, ...]:
-    """Make a note on the likeliest cause of misfit, with its share, and on further ones; () if there are no `causes`.
+    """Make a note on the likeliest cause of a scan's misfit, with its share, and on further ones; () for none.
 
     It is grave where the scan's `facts` say the same of the likeliest, and so take the proof away; else a caution: that
     a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and

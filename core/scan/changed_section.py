@@ -63,7 +63,7 @@ class ChangedSection:
 
     @property
     def note(self) -> Message:
-        """Note on how much the section of the fan's stripes has changed."""
+        """Note on how much the cross-section (skewness) of the fan's stripes has changed since the calibration."""
         return note_of(
             "scan.section_changed", now=self.skewness, then=self.then, error=self.error, shift_px=self.shift_px
         )

@@ -67,7 +67,7 @@ class CommonErrors:
             set_field(self, "bends", frozen_array(self.bends, (count, self.fans.shape[1], 3, 3), "bends"))
 
     def changes(self, uv: Array, sweep: Index) -> Iterator[Array]:
-        """Yield the changes (N, 3) in mm of the points seen at `uv` (N, 2) px in `sweep` (N,) by each displacement."""
+        """Yield for each displaced calibration the shifts (N, 3) in mm of points at `uv` (N, 2) px in `sweep` (N,)."""
         rays = self._rays(0, uv)
         here = self._points(0, uv, sweep, rays)
         for row in range(1, 1 + len(self.sources)):
@@ -89,7 +89,7 @@ class CommonErrors:
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
     def planes(self, uv: Array, sweep: Index, row: int = 0) -> Array:
-        """Compute the light planes (N, 3) in 1/mm of points seen at `uv` (N, 2) px in `sweep` (N,).
+        """Compute the light planes (N, 3) in 1/mm of points at `uv` (N, 2) px in `sweep` (N,), by solution `row`.
 
         `row` 0: as calibrated; k > 0: with the displacement k − 1.
         """
@@ -131,7 +131,7 @@ def solve_common(
     method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> CommonErrors:
-    """Solve `scan` again by the same `method` with each of the `deviations`, from the same `features`.
+    """Solve a scan again from the same features with each of the displaced calibrations `deviations`.
 
     `camera` and `fan` are those it was solved with.
 

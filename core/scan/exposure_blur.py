@@ -42,7 +42,7 @@ WORTH_A_NOTE = 0.1
 
 
 def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array], cloud: Cloud, camera: Camera) -> Array:
-    """Estimate (F, 2) in px how far each frame's stripe spreads within its exposure, and the σ of its section at rest.
+    """Estimate (F, 2) in px how much motion in its exposure widens each frame's stripe, and its σ if at rest.
 
     `sheets` are the light planes π (3,) of the frames that were located, `cloud` the points of all. NaN for frames that
     pass too few parts of the picture where others pass, too.

@@ -98,7 +98,7 @@ class FanRest:
 
     @property
     def what_moved(self) -> Message:
-        """Name of what has moved: the part alone, or more."""
+        """Name of what has moved: the part or, if nearly all of the fan's light has shifted, camera, fan or table."""
         return EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
@@ -165,7 +165,7 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
 
 
 def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
-    """Collect in the K frames that have them how far in px each of C stretches of the fan's light has shifted sideways.
+    """Collect how far in px each of C stretches of the fan's light has shifted sideways in the K frames that tell.
 
     Returns the indices (K,) of the frames, the shifts (K, C) and the noise (C,) of each stretch, as `fan_stretches`
     cuts them.

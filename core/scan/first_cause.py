@@ -74,7 +74,7 @@ Causes = tuple[Cause, ...]
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """Reason why a scan gave no result, shown before the complaint about the result.
+    """Reason why a scan gave no result, worded to stand before the complaint that there is none.
 
     Parameters
     ----------

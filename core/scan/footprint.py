@@ -52,7 +52,7 @@ def _face(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]
 
 
 def px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array:
-    """Compute by how many px (N,) a stripe at `uv` (N, 2) moves when its sheet moves 1 mm along its normal.
+    """Compute by how many px (N,) a stripe at `uv` (N, 2) moves when its sheet of light moves 1 mm along its normal.
 
     `surfaces` are those of the parts of the picture. NaN where no surface is known, or the light lies on another one.
     """

@@ -25,7 +25,7 @@ class Method(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ReconstructOptions:
-    """Options of solving a scan.
+    """Options of solving a scan: how sweeps are located, which points are left out, time from row to row.
 
     `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out. `row_time_us` is the time from
     one row of a picture to the next, 0 where all are taken at once, None where nothing is stated.
@@ -37,7 +37,7 @@ class ReconstructOptions:
 
     @property
     def complaint(self) -> Message | None:
-        """Reason why these options cannot be used; None if they can."""
+        """Complaint that the cut of σ or the time from row to row is impossible; None if both can be."""
         row_time = 0.0 if self.row_time_us is None else self.row_time_us
         if 0 < self.sigma_cut_mm <= MOST_SIGMA_CUT_MM and 0 <= row_time < math.inf:
             return None

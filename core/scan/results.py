@@ -25,7 +25,7 @@ __all__ = ["FrameRecord", "ScanResult"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanResult:
-    """Result of solving a scan: its surface points, the sweeps' light planes, and what they rest on.
+    """Result of solving a scan: its surface points, the sweeps' light planes, and how well all crossings agree.
 
     Parameters
     ----------

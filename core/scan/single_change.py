@@ -52,7 +52,7 @@ LARGE = 5.0
 
 
 class Changed(StrEnum):
-    """Part of the rig that a single change concerns."""
+    """Part of the rig that has changed: the picture's place along u or v or both, the focus, or the fan."""
 
     PICTURE_ALONG_U = "picture along u"
     PICTURE_ALONG_V = "picture along v"
@@ -92,7 +92,7 @@ class SingleChange:
 
     @property
     def message(self) -> Message:
-        """Sentence that names what has changed, and by how much."""
+        """Sentence that names what part of the rig has changed and, if it is known well, by how much."""
         if self.what == Changed.FOCUS:
             percent = 100 * float(self.size[0])
             return Message("scan.change_of_focus", "the focal length changed by {percent:+.2g} %", percent=percent)
@@ -124,7 +124,7 @@ class Explanation:
 
     @property
     def note(self) -> Message:
-        """Note on how much crossings disagree, and which change would explain it."""
+        """Note on how much a scan's crossings disagree, and which single changes of the rig would each explain it."""
         return note_of(
             "scan.explained_by_change",
             times=float(np.sqrt(self.misfit)),

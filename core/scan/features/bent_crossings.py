@@ -66,7 +66,7 @@ class _End:
 
 
 def crossed_again(table: CrossingTable, lines: Mapping[Name, BentLine]) -> CrossingTable:
-    """Compute anew the crossings of which both ends lie on a bend of `lines`, with their σ as before; others stay."""
+    """Compute again, with σ, the crossings of which both centrelines lie on a bend there; the others stay."""
     bent = np.flatnonzero(_on_bend(table, "a", lines) & _on_bend(table, "b", lines))
     mine = table.select(bent)
     ends = [_End(tuple(_rows(mine, end, lines)), getattr(mine, f"tangent_{end}")) for end in "ab"]

@@ -55,7 +55,7 @@ def all_crossings(
     window: CrossingWindow,
     progress: Progress = silent,
 ) -> CrossingTable:
-    """Find every crossing of each sweep with the fan and with each later sweep."""
+    """Find every crossing of each sweep's centrelines with those of the fan and of each later sweep."""
     pictures = (fan, *sweeps)
     progress("crossings", 0, len(sweeps))
     lines = Stack([piece for pieces in pictures for piece in pieces], window.half_length_px)

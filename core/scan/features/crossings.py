@@ -84,7 +84,7 @@ class CrossingTable:
 
     @property
     def with_fan(self) -> NDArray[np.bool_]:
-        """Mask (M,), True where b is the fan."""
+        """Mask (M,) of the crossings with the fan: b is the fan, not a later sweep."""
         return self.b < 0
 
     def select(self, keep: NDArray[np.bool_] | Index) -> CrossingTable:
@@ -104,7 +104,7 @@ class CrossingTable:
         return replace(self, a=self.b, b=self.a, **turned)
 
     def followed_by(self, *others: CrossingTable) -> CrossingTable:
-        """Append the rows of the `others` to the rows of this table."""
+        """Append the crossings of the `others` to those of this table, in order."""
         names = [f.name for f in fields(self) if f.name != "half_length_px"]
         tables = (self, *others)
         joined = {name: np.concatenate([getattr(table, name) for table in tables]) for name in names}

@@ -83,7 +83,7 @@ class ScanFeatures:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenLines:
-    """Centrelines of a scan's pictures before they are crossed: no camera is needed for them.
+    """Centrelines of a scan's pictures that have not been crossed yet, which takes no camera.
 
     `stripes` are the fan's and the sweeps', as they were looked for.
     """
@@ -186,7 +186,7 @@ def gather(
     progress: Progress = silent,
     smoothed: bool = True,
 ) -> ScanFeatures:
-    """Cross the centrelines of a scan as they were extracted, then average them along themselves: its features.
+    """Make the features of a scan: cross its centrelines as they were extracted, then average these along themselves.
 
     `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
     centrelines stay as they are.
@@ -252,7 +252,7 @@ def _handed_on(ahead: list[Frame], frames: Iterator[Frame]) -> Iterator[Frame]:
 def choose_sweep_stripe(
     frames: Sequence[Frame], reference: ReferenceFeatures, progress: Progress = silent
 ) -> StripeSettings | None:
-    """Choose the median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
+    """Choose the median width and contrast of the sweeps' stripe in `frames`; None if none of them shows a stripe."""
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, Reason) and picture.shape == reference.base.shape:
@@ -327,7 +327,7 @@ class FurtherExposures:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameReader:
-    """Reader that reduces a frame to features against one reference; it may be called from several threads."""
+    """Reader that extracts the features of frames, compared with one reference; several threads may call it."""
 
     reference: ReferenceFeatures
     stripe: StripeSettings | None
@@ -370,7 +370,7 @@ class FrameReader:
 
 
 def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:
-    """Collect a picture's centrelines, `saturated` pixels (H, W) and mean grey, as a share of full scale."""
+    """Collect a picture's centrelines, `saturated` pixels (H, W) and mean grey level over full scale."""
     return Exposure(lines, saturated, float(picture[::4, ::4].mean()) / np.iinfo(picture.dtype).max)
 
 

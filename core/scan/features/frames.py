@@ -48,7 +48,7 @@ class FrameFeatures(Excludable):
     gain: float = 1.0
 
     def in_whole_picture(self, sites: Sites) -> FrameFeatures:
-        """Convert centrelines and shifts from px of `sites` to px of the whole picture."""
+        """Convert centrelines and shifts from px of the `sites` of a colour mosaic to px of the whole picture."""
         return replace(
             self,
             centrelines=sites.in_whole_picture(self.centrelines),
@@ -211,7 +211,7 @@ def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
 
 
 def left_out_notes(frames: Sequence[FrameRecord]) -> tuple[Message, ...]:
-    """Make one note for every reason why frames gave no points, with the names of the first."""
+    """Make a note for each reason why frames gave no points, with the names of its first frames; () for none."""
     names: dict[Message, list[str]] = {}
     for frame in frames:
         if not frame.used:

@@ -50,12 +50,12 @@ class Mosaic(NamedTuple):
 
     @property
     def too_fine(self) -> bool:
-        """Whether the stripes are too fine for the tiles of the mosaic."""
+        """Whether the fan's stripes are too fine for the tiles of the camera's colour mosaic."""
         return self.width_px is not None or self.uneven is not None
 
 
 def mosaic_of(fan: Sequence[Centreline], base: Picture) -> Mosaic:
-    """Look for the trace of a colour mosaic in the picture `base` (H, W), along the fan's stripes."""
+    """Look for the trace of a colour mosaic along the fan's stripes in the picture `base` (H, W)."""
     return Mosaic(_width_if_interpolated(fan, base), _unevenness(fan, base))
 
 

@@ -63,9 +63,7 @@ def quantile_reference(pictures: Sequence[Picture]) -> Picture:
 
 
 def picture_difference(picture: Picture, base: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
-    """Subtract `base` from `picture`, both (H, W).
-
-    In 16-bit integers where they hold it, as less memory is moved, else float32.
+    """Compute `picture` − `base` (H, W), as int16 if both are of 8 bits, else as float32.
 
     Pictures of 8 bits are what a camera sends a hundred times a second: a compiled loop takes a third of the time that
     OpenCV takes for different types of input and output.
@@ -93,7 +91,7 @@ enough that a sweep across it does not matter to its median."""
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceCheck:
-    """Departure of a frame from the reference, in place and in light.
+    """Departure of a frame from the reference: shifts in px of the fan's light, its loss, and change of background.
 
     `shift_px` is the largest median shift of any of the fan's centrelines across itself; `lost` says that a whole
     stretch of the fan's light is gone; `light` the change of the background in grey levels. `shifts_px` (C,) are the
@@ -224,7 +222,7 @@ class ReferenceFeatures:
 
     @property
     def image_size(self) -> tuple[int, int]:
-        """Width and height of the picture, in px."""
+        """Width and height in px of the picture with the fan alone."""
         height, width = self.base.shape
         return width, height
 

@@ -37,7 +37,7 @@ class CrossingRays:
         return CrossingRays(self.rays[keep], self.jacobians[keep])
 
     def followed_by(self, other: CrossingRays) -> CrossingRays:
-        """Append the rows of `other` to these rows."""
+        """Append the rays of the crossings in `other` to these."""
         return CrossingRays(np.concatenate([self.rays, other.rays]), np.concatenate([self.jacobians, other.jacobians]))
 
 
@@ -60,7 +60,7 @@ def noise_gains(crossings: CrossingTable, gradient: Array) -> tuple[Array, Array
 
 
 def floored(gradient: Array, floor: float) -> Array:
-    """Lengthen the vectors of `gradient` (M, 2) that are shorter than `floor` to it.
+    """Lengthen to the length `floor` the vectors of `gradient` (M, 2) that are shorter, keeping their directions.
 
     Near a solution in which all planes fall together the gradient vanishes and weights run away; the rig's own
     geometry, not the current solution, sets how small it can be. One that has vanished has no direction: those of

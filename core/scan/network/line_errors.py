@@ -27,7 +27,7 @@ _MOST_CELLS, _MOST_PIECES = 1_000_000, 10_000
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LineErrors:
-    """Errors of the centrelines at M crossings, in pixels: shares of the cells' z, and an independent rest.
+    """Errors in px of the centrelines at M crossings: shares of errors common to a cell, and an independent rest.
 
     Once in the network's equations they count along the normal (t_v, −t_u) of a line with the tangent t, that of
     `core.image.stripes.centreline.Centreline`; as all are symmetric about 0, the sign of z is there for the taking.

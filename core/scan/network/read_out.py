@@ -154,7 +154,7 @@ class ReadOut:
         return bool(self.shifts_mm)
 
     def weight(self, sweeps: int) -> csr_array:
-        """Make the prior's weight matrix for the unknowns of `sweeps` in order of time; 0 for the planes themselves.
+        """Make the prior's weight matrix for the unknowns of `sweeps` in order of time; 0 for the middle planes.
 
         It is the inverse of the covariance of how the hand moves the planes within a read-out.
         """
@@ -174,7 +174,7 @@ class ReadOut:
         return csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
     def log_det_weight(self, sweeps: int) -> float:
-        """Compute the logarithm of the determinant of the prior's weight matrix, up to what no hand changes."""
+        """Compute log det of the prior's weight matrix for `sweeps` sweeps, up to what no hand changes."""
         frame = np.arange(sweeps)
         kept = np.exp(-np.abs(frame[:, None] - frame) / KEPT_FRAMES)
         first = self.shifts_mm[0] ** 2 * np.eye(sweeps) + self.steady_mm**2 * kept

@@ -39,7 +39,7 @@ RELOCATION = 8
 
 @dataclass(frozen=True, slots=True)
 class PreviewOptions:
-    """Options of a scan's preview: which points are shown, and when hints are given.
+    """Options of a scan's preview: which and how many points are shown, and when hints are given.
 
     Points up to `largest_sigma_mm` are shown (twenty times the result's: a frame alone is less sure), every `thin`-th
     of a stripe; of a long scan fewer, of all its frames alike, so that the sweeps' stripes have no more than
@@ -77,7 +77,7 @@ class StripeRays:
         return cls(frame, uv, rays, across, strength, ~saturated & np.isfinite(rays).all(axis=1))
 
     def thinned(self, step: int = 2) -> StripeRays:
-        """Select every `step`-th point; copied, so that the others' memory is free."""
+        """Select every `step`-th point of the stripe, as a copy, so that the others' memory can be freed."""
         return StripeRays(
             self.frame,
             self.uv[::step].copy(),
@@ -160,7 +160,7 @@ class Preview:
         return self._coming is not None or self._thinned or self._tracker.is_due
 
     def go_on(self) -> None:
-        """Do a small part of locating earlier sweeps again with what later frames have shown.
+        """Do a small part of locating earlier sweeps again with what later frames have shown, while `has_more`.
 
         Called again and again it adjusts the anchors when that is due, and then makes the cloud anew by them,
         RENEWED_AT_ONCE sweeps at a time. The next frame brings the cloud once it is complete.

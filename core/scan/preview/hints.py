@@ -16,7 +16,7 @@ or beyond what the fan meets."""
 
 @dataclass(frozen=True, slots=True)
 class HintLimits:
-    """Limits beyond which a hint is given; chosen with the simulated scan (tests/scan/preview/test_frames.py).
+    """Limits of σ, speed, brightness and saturation beyond which a hint is given on moving the hand-held laser.
 
     `sigma_mm`: a frame whose points are this uncertain (median) needs better crossings. `speed_share`: movement from
     frame to frame over the picture's width. `faint` of the largest grey level: a stripe lower than this. `saturated`:
@@ -31,7 +31,7 @@ class HintLimits:
 
 @dataclass(frozen=True, slots=True)
 class HandState:
-    """State of the hand-held laser in one frame, as far as hints need it.
+    """What one frame shows of the hand-held laser for hints: lines crossed, σ, speed, brightness, saturation.
 
     `lines_met` of the fan's `lines` are crossed; `sigma_mm` is the median over the frame's points, NaN when the sweep
     is not located; `speed_px` since the frame before, NaN if not known; `width_px` the picture's; `strength` and

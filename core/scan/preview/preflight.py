@@ -45,7 +45,7 @@ class Check:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Preflight:
-    """Facts known before a scan, and the checks that follow from them.
+    """Facts known before a scan, such as reference and calibrations, and the checks that follow from them.
 
     Parameters
     ----------

@@ -198,7 +198,7 @@ class FrameStages:
 
 @dataclass(frozen=True, slots=True)
 class SettledScan:
-    """Settings found by a finished measurement: the stripes' width and contrast, the fan line of each piece.
+    """Settings that a finished measurement found: the stripes' width and contrast, the line of each fan centreline.
 
     `second_bounces` are frame and number of the sweeps' centrelines that it left out as such.
     """

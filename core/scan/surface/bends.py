@@ -80,7 +80,7 @@ class Bends:
 
     @property
     def flat(self) -> bool:
-        """Whether no bend is significant anywhere."""
+        """Whether the surface has no significant bend anywhere."""
         return not self.curvature.any()
 
     def at(self, points: Array) -> tuple[Array, Array]:

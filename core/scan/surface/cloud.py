@@ -77,7 +77,7 @@ class Cloud:
         return len(self.points)
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.intp]) -> Cloud:
-        """Select the points for which `keep` is true, or which it numbers."""
+        """Select points by a mask (N,), or by their indices."""
         return Cloud(
             self.points[keep],
             self.uv[keep],

@@ -36,7 +36,7 @@ class CoverageMap:
 
     @property
     def share(self) -> float:
-        """Covered share (0 … 1) of the hull around all light seen; 0 before there is any."""
+        """Share (0 … 1) of the hull around all light seen that measured points cover; 0 before light is seen."""
         rows, columns = np.nonzero(self.lit)
         if not len(rows):
             return 0.0

@@ -72,7 +72,7 @@ class Surface:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns of the grid."""
+        """Numbers of rows and columns of the grid of cells over the picture."""
         return grid_shape(self.image_size, self.cell_px)
 
     @property
@@ -88,14 +88,14 @@ class Surface:
         return self.grid(self.points[:, 2])
 
     def grid(self, values: Array) -> Array:
-        """Lay out `values` (M,) of the fused points as (rows, columns); NaN in empty cells."""
+        """Lay out `values` (M,) of the fused points on the grid of cells, as (rows, columns); NaN in empty cells."""
         laid = np.full(self.shape, np.nan)
         laid.ravel()[self.cells] = values
         return laid
 
 
 def grid_shape(image_size: tuple[int, int], cell_px: float) -> tuple[int, int]:
-    """Compute rows and columns of the grid of cells that covers a picture of `image_size` (width, height)."""
+    """Compute how many rows and columns of cells cover a picture of `image_size` (width, height)."""
     width, height = image_size
     return int(np.ceil(height / cell_px)), int(np.ceil(width / cell_px))
 

@@ -151,7 +151,7 @@ class Measured(NamedTuple):
 
 
 class FusedCells(NamedTuple):
-    """The fused points of M cells.
+    """Fused points of the M occupied cells of the grid: weighted means, and which points they are made of.
 
     `means` (M, 6) weighted means of x, y, z, u, v and intensity; `weight` (M,) their sums of weights in 1/mm²; `number`
     (M,) of points; `member` (N,) for each of all N points the cell it is part of, as an index into the M, or −1.

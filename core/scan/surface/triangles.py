@@ -21,7 +21,7 @@ AT_ONCE = 200_000
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Triangles:
-    """Corners (T, 3, 3) in mm; seen from outside each runs anticlockwise.
+    """Surface of triangles, with corners (T, 3, 3) in mm; seen from outside each runs anticlockwise.
 
     They stand for a surface that lies up to `chord_mm` off them; 0 where that is not known, as of an STL file.
     """
@@ -40,11 +40,11 @@ class Triangles:
 
     @property
     def size_mm(self) -> float:
-        """Diagonal in mm of the box around the surface."""
+        """Diagonal in mm of the box, along the axes, around all triangles."""
         return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
 
     def moved(self, rotation: Array, translation: Array) -> Triangles:
-        """Move the surface by X → R X + t, R (3, 3) and t (3,) in mm."""
+        """Copy the surface moved by X → R X + t, R (3, 3) and t (3,) in mm."""
         return replace(self, corners=self.corners @ rotation.T + translation)
 
 
@@ -76,7 +76,7 @@ class _Best:
 
 
 class ProximityQuery:
-    """Query of the nearest place on a surface of triangles.
+    """Index of a surface of triangles for finding the place on it that is nearest to a point.
 
     `surface` are the triangles themselves. They are kept in classes of about one size, each with a tree of its own: the
     reach of a few large triangles must not make every small one a candidate.

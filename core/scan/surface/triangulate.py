@@ -90,7 +90,7 @@ def triangulate(
 
 
 def join(clouds: list[Cloud]) -> Cloud:
-    """Concatenate the points of `clouds`, in order."""
+    """Concatenate the points of several clouds, in order, to one."""
     if not clouds:
         empty, index = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cloud(np.zeros((0, 3)), np.zeros((0, 2)), empty, empty, index, index, np.zeros((0, 3)))

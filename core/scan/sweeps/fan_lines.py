@@ -114,7 +114,7 @@ class FanLines:
         return int(np.count_nonzero(np.any([on for on in lying if on.sum() > 2] or [False], axis=0)))
 
     def agreed(self, others: Sequence[FanLines]) -> FanLines:
-        """Set to UNASSIGNED each centreline to which any of the `others` gives another line."""
+        """Copy the numbering, with UNASSIGNED for each centreline to which any of the `others` gives another line."""
         line, reason = list(self.line), list(self.reason)
         for i, k in enumerate(line):
             if {k, *(lines.line[i] for lines in others)} - {k, UNASSIGNED}:
@@ -123,7 +123,7 @@ class FanLines:
 
 
 def possible_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> tuple[FanLines, ...]:
-    """Number the fan's centrelines 0 … N − 1 in every way that some place of the laser allows, likeliest first."""
+    """Number the fan's centrelines in every way that some place of the laser allows, the likeliest first."""
     if fan.lines == 1:
         return (FanLines((0,) * len(pieces), (None,) * len(pieces), ((0,),) * len(pieces)),)
     rays = [camera.rays(piece.uv) for piece in pieces]

@@ -59,7 +59,7 @@ class LocatedSweeps:
 
     @property
     def middle_planes(self) -> tuple[Array, Array]:
-        """Planes (S, 3) in 1/mm in the middle of the read-out, and their covariance (3S, 3S)."""
+        """Planes (S, 3) in 1/mm that sweeps have in the middle of the read-out, and their covariance (3S, 3S)."""
         if self.pis.shape[1] == 3:
             return self.pis, self.covariance
         middle = np.arange(self.pis.size).reshape(self.pis.shape)[:, :3].ravel()
@@ -68,7 +68,7 @@ class LocatedSweeps:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SweepPlanes:
-    """Solved planes without their uncertainty: `frames` (S,), `pis` (S, 3) in 1/mm, and each crossing's weight.
+    """Light planes of sweeps without uncertainty: `frames` (S,), `pis` (S, 3) in 1/mm, each crossing's weight.
 
     `collapsed`: whether the planes have fallen together into one.
     """
@@ -221,7 +221,9 @@ def planes_together(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> SweepPlanes:
-    """Locate all sweeps in one adjustment without their uncertainty, in half the time of `locate_together`.
+    """Locate all sweeps in one adjustment without their uncertainty, in half the usual time.
+
+    As `locate_together`, which takes the same.
 
     Raises
     ------
@@ -236,7 +238,7 @@ def planes_together(
 
 
 def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
-    """List the frames (S,) that have any crossing, in order."""
+    """List in order the indices (S,) of the frames with a sweep that crosses anything."""
     return np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
 
 

@@ -48,7 +48,7 @@ class KnownPlanes:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OneSweep:
-    """Located sweep: its plane `pi` (3,) in 1/mm with `covariance` (3, 3).
+    """Located sweep: its plane `pi` (3,) in 1/mm with `covariance` (3, 3), and how its crossings agree with it.
 
     `weights` (M,) of the crossings, 0 (left out) to 1; `residuals` (M,) in standard deviations; `condition` of the
     crossings with the fan that count.

@@ -162,7 +162,7 @@ class SweepTracker:
         return self._sweeps[frame]
 
     def sweeps(self) -> Iterator[TrackedSweep]:
-        """Yield all sweeps so far, in the order they came."""
+        """Yield all sweeps located so far, in the order in which their frames came."""
         return iter(self._sweeps.values())
 
     def _is_new(self, pieces: Sequence[Centreline]) -> bool:
