@@ -55,7 +55,7 @@ def run_batch(
     watch: Watch = ignore_update,
     measure: Measure | None = None,
 ) -> tuple[SetResult, ...]:
-    """Measure recording sets side by side in `executor`; one that cannot be measured has an error, the others go on.
+    """Measure recording sets side by side in `executor`; for one that cannot be measured the result holds the error.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def measure_sets(
 
 
 def sets_in(folder: Path) -> tuple[Path, ...]:
-    """List the recording sets in `folder`, sorted by name; `folder` alone if it is itself a set.
+    """List the recording sets in `folder`, sorted by name; `folder` alone if it is a set; InputError if none is.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def sets_in(folder: Path) -> tuple[Path, ...]:
 
 
 def measure_set(folder: Path, out: Path, options: Options, stop: Path, progress: Progress = silent) -> SetResult:
-    """Measure one recording set into `out`; raise Cancelled as soon as a file `stop` exists."""
+    """Measure one recording set into `out`, return its result or error; raise Cancelled once the file `stop` exists."""
     began = time.perf_counter()
     try:
         measured = run(folder, out, options, _stopped_by(stop, progress))

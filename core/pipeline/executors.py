@@ -29,7 +29,7 @@ CONNECT_S = 10.0
 
 @contextmanager
 def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
-    """Make the executor that `text` names, and shut it down at the end.
+    """Make the executor that `text` names, of processes, threads or a Dask cluster; shut it down after the block.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class ScanChecks:
         self._tell(None, None)
 
     def accepted(self) -> None:
-        """Make the checks that a new reference allows, such as that of the section of the fan's stripes."""
+        """Compare the section of a new reference's stripes with the calibration's, and make the checks anew."""
         request = self._context.request
         camera, fan = request.camera, request.fan
         if camera is not None and fan is not None and not _is_readjusted(request):
@@ -63,7 +63,7 @@ class ScanChecks:
         self._tell(self._previewer.fan_lines, departed)
 
     def stripes(self, stripes: Sequence[Centreline]) -> None:
-        """Give new advice on the exposure, if it has changed with these stripes of the hand-held laser."""
+        """Advise on the exposure, by the hand-held laser's stripes in one more picture, if the advice has changed."""
         context = self._context
         advice = self._adviser.watch(stripes, self._previewer.full_scale, context.settings, context.capabilities)
         if advice is not None:
@@ -98,7 +98,7 @@ class ScanChecks:
 
 
 def planes_acquisition(request: LiveRequest) -> Acquisition | None:
-    """Read by which camera and when the poses of the fan's calibration were recorded; None if not known."""
+    """Read by which camera, and when, the fan's calibration was recorded; None if that is not known."""
     if request.kept_planes is None or request.camera is None:
         return None
     try:

@@ -95,34 +95,34 @@ class TakeReference:
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Command to record nothing until Resume."""
+    """Command to record no frames until Resume is given."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume:
-    """Command to record again."""
+    """Command to record frames again after Pause."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Command to mark the newest recorded frame, to be found again."""
+    """Command to mark the newest recorded frame, so that it can be found again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Command to finish: what has been recorded is complete."""
+    """Command to finish the recording: what has been recorded is complete."""
 
 
 @dataclass(frozen=True, slots=True)
 class Configure:
-    """Command to change the settings of the source."""
+    """Command to change the settings of the source to `settings`."""
 
     settings: SourceSettings
 
 
 @dataclass(frozen=True, slots=True)
 class Discard:
-    """Command to move the view or pose of this name into the folder `discarded`."""
+    """Command to move the view or pose called `name` into the folder `discarded`."""
 
     name: str
 

@@ -23,7 +23,7 @@ DISCARDED = "discarded"
 
 
 class LiveStep(Protocol):
-    """Step of a live recording: camera, planes or scan."""
+    """Interface of the steps of a live recording: camera, planes and scan."""
 
     @property
     def show_with_findings(self) -> bool:
@@ -117,7 +117,7 @@ class LiveContext:
         self._log.close()
 
     def switch(self, lasers: Lasers) -> bool:
-        """Set the lasers from now on; True if the source switches them itself."""
+        """Set which lasers are on from now on; return True if the source switches them, False if a person must."""
         self.lasers = lasers
         return self.source.lasers(lasers)
 
@@ -127,7 +127,7 @@ class LiveContext:
             self.source.go_on(frame)
 
     def ask(self, sentence: Message, button: str, answer: Command) -> None:
-        """Ask the user to do something and then press a button."""
+        """Ask the user to do what `sentence` says and then to press `button`, which sends `answer`."""
         self._asking = True
         self.emit(LiveAsk(sentence, button, answer))
 

@@ -58,7 +58,7 @@ class CameraDetail:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlanesDetail:
-    """Plane target in the live picture and the fan's stripes on it.
+    """Corners of the plane target and the fan's stripes in the live picture, and what the poses taken still lack.
 
     `stripes` are (N, 2) in pixels each, none with a picture of another frame; `line` is the fan line (from 0) each of
     them is likely to be, −1 where that is not clear. Else as CameraDetail; `poses` are taken.
@@ -128,7 +128,7 @@ class LiveStarted:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveView:
-    """Event with a picture to show.
+    """Event with a live picture to show, reduced to 8 bit, with what is known of it and counts of frames.
 
     Parameters
     ----------
@@ -212,14 +212,14 @@ class LiveChecks:
 
 @dataclass(frozen=True, slots=True)
 class LiveUnplugged:
-    """Event that the source is gone; it is looked for every second. What is recorded is kept."""
+    """Event that the source is gone; it is looked for every second, and what is recorded is kept."""
 
     sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class LiveBack:
-    """Event that the source is there again and the recording continues."""
+    """Event that the source, which was gone, is there again and the recording continues."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -118,7 +118,7 @@ def measure_pair(
     settings: StripeSettings | None,
     margin_mm: float | None,
 ) -> PoseFeatures:
-    """Measure a pose from its pictures with the fan `on` and `off` (None: not taken), as its calibration will."""
+    """Measure a pose from its pictures, fan `on` and `off` (None: not taken), as the fan's calibration does."""
     return measure_plane_pose(name, on, off, target, camera, settings, margin_mm)
 
 

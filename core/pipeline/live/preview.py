@@ -78,7 +78,7 @@ class ScanPreviewer:
         return 255.0 if self._reference is None else self._reference.full_scale
 
     def departed(self, picture: Picture) -> ReferenceMismatch:
-        """Check whether a picture still agrees with the reference; the reason is None if it does, or without one."""
+        """Check whether a picture still agrees with the reference; `reason` is None if so, or before a reference."""
         if self._reference is None:
             return ReferenceMismatch(None)
         seen = FrameReader(self._reference, None)((0, ("", picture)))

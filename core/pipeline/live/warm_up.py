@@ -91,7 +91,7 @@ Stages = tuple[Callable[[], None], ...]
 
 
 def stages() -> Stages:
-    """List the functions that compile one part each, none much longer than a minute; the last one records the end."""
+    """List the functions that compile a part each, in about a minute at most; the last records that all are done."""
     return (*(stage for share in shares() for stage in share), keep_complete)
 
 

@@ -33,7 +33,7 @@ from core.second_process import SecondProcess
 
 
 def accepted_camera(folder: Path, project: Project) -> Camera:
-    """Read the accepted camera; InputError if there is none, or it is damaged."""
+    """Read the camera accepted in a project; InputError if none is, or it is damaged."""
     return _accepted(folder, project).camera
 
 
@@ -85,7 +85,9 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
 def find_poses(
     folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
 ) -> tuple[PoseFeatures, ...]:
-    """Find target and stripes in the pictures of every pose; InputError without an accepted camera or pictures.
+    """Find target and stripes in the pictures of every pose, and store the poses; InputError without pictures.
+
+    InputError without an accepted camera as well.
 
     What is found is kept in the project. The process `beside` takes some of the poses.
     """

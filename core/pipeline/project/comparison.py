@@ -23,7 +23,7 @@ MOST_DRAWN = 200_000
 def compare_project(
     folder: Path, other: Path, align: str, scales: ComparisonScales, progress: Progress = silent
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare a project's scan with the surface in `other`, and note the written files in its audit trail.
+    """Compare a project's scan with the surface in `other`, write the result, and note it in the audit trail.
 
     As `core.pipeline.steps.compare_step.compare_step`.
     """
@@ -35,7 +35,9 @@ def compare_project(
 def show_comparison(
     folder: Path, other: Path, align: str, diameter_mm: float = 0.0, progress: Progress = silent
 ) -> ShownComparison:
-    """Compare a project's scan with the surface in `other` over circles of `diameter_mm` (0: chosen), for display.
+    """Compare a project's scan with the surface in `other` over circles of `diameter_mm`; write and return it.
+
+    `diameter_mm` 0: chosen.
 
     Raises
     ------

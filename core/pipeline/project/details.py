@@ -38,7 +38,7 @@ from core.scan.surface.coverage_map import CoverageMap
 
 
 def show_frame(folder: Path, project: Project, name: str, progress: Progress = silent) -> FrameStages:
-    """Compute all stages of processing one frame, `name` as in "scan/frame0007.png", with what is calibrated so far.
+    """Compute every stage of processing the frame `name` ("scan/frame0007.png"), with accepted calibrations if any.
 
     What a measurement of this very recording has settled (the look of the stripes, the numbers of the fan's lines) is
     taken from it.

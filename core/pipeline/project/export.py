@@ -81,7 +81,7 @@ def export(
     in_camera_frame: bool = False,
     progress: Progress = silent,
 ) -> Path:
-    """Write one result of a project, a `kind` of EXPORTS, to `path` and return `path`; it appears whole or not at all.
+    """Write one result of a project, a `kind` of EXPORTS, to `path` and return `path`; the file is whole or not there.
 
     The report is a copy of the one among the results, or made on the way where the project cannot be written to.
 

@@ -101,7 +101,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
 
 
 def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progress: Progress = silent) -> Array:
-    """Compute the outline (n, 2) in px of the points `numbers` of the cloud, or of the plane `face` they lie on.
+    """Compute the outline (n, 2) in px of the points `numbers` of the cloud or, given `face`, of that plane face.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ class Placing:
 
 
 def placing(folder: Path, project: Project, progress: Progress = silent) -> Placing | None:
-    """Find where the part of a project lay in the picture; None without a measured thickness or a reference picture.
+    """Find where a project's part lay, in outline; None without a measured thickness or a reference picture.
 
     Raises
     ------

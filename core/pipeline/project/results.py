@@ -29,7 +29,7 @@ _PARTS = 6
 
 
 def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
-    """Read the results of the project, or the results themselves, in `folder`; what is missing or wrong is None.
+    """Read the results in `folder`, of a project or of results alone; what is missing or wrong is None.
 
     What is damaged or was measured with another calibration is None, too, and a sentence says so; nothing is raised for
     it.

@@ -11,7 +11,7 @@ from core.progress import Progress, silent
 
 
 def listed_results(folder: Path, progress: Progress = silent) -> ResultList:
-    """Read all values measured in the project, or results, in `folder`, with the verdict on the part.
+    """Read all measured values in `folder`, of a project or of results alone, with the verdict on the part.
 
     Raises
     ------

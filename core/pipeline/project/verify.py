@@ -66,7 +66,10 @@ def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
 
 
 def note_results(folder: Path, *, reported: bool = False) -> None:
-    """Write an entry with the hashes of the project's results as they are into its audit trail; raises as `append`."""
+    """Write an entry with the hashes of the project's results as they are into its audit trail.
+
+    Raises as `append`.
+    """
     append(folder, "reported" if reported else "measured", files=_hashes(folder))
 
 

@@ -25,7 +25,7 @@ Watch = Callable[[ScanDetail], None]
 def measure_watched(
     folder: Path, project: Project, progress: Progress = silent, watch: Watch | None = None
 ) -> ScanSummary:
-    """Measure a project's scan as `measure_scan`, calling `watch` for each frame, in order, on this thread.
+    """Measure a project's scan and call `watch` for each frame, in order, on this thread, with what is seen so far.
 
     Raises
     ------

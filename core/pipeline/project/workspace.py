@@ -33,7 +33,7 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 
 def rig_in_its_air(project: Project) -> Rig:
-    """Set temperatures of check and scan that the rig leaves unstated to the air's in the project.
+    """Copy a project's rig, with temperatures of check and scan that are not stated set to the air's.
 
     Only where the calibration's temperature or a drift is stated.
     """

@@ -69,7 +69,7 @@ def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
 
 
 def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews:
-    """Find the camera target in every view, a few pictures at a time.
+    """Find the camera target in every view of a set, a few pictures at a time.
 
     Raises
     ------

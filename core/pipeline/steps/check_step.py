@@ -189,7 +189,7 @@ def check_paths(recording_set: RecordingSet) -> list[Path]:
 
 
 def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSet:
-    """Remove from a set those pictures of its interim check that camera and fan were re-adjusted by.
+    """Remove from a set those pictures of its interim check that camera and fan were already re-adjusted by.
 
     They cannot check what was made with them, and are known again by their content.
     """
@@ -220,7 +220,7 @@ def since_calibration(
     scanned: Acquisition | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
 ) -> Change:
-    """Estimate how camera and fan may have changed from their calibration to the scan, by stated and measured facts.
+    """Estimate how camera and fan may have changed from calibration to scan, as far as no picture excludes it.
 
     Parameters
     ----------
@@ -314,7 +314,7 @@ def judged(
     at_scan: bool = False,
     scanned: Acquisition | None = None,
 ) -> Judged:
-    """Judge how camera and fan have changed since calibration, by the poses of an interim `check` and other pictures.
+    """Judge how camera and fan have changed since calibration, by the poses of an interim `check` and by the scan.
 
     When the check was taken, or `at_scan`, when the frames were; `scanned` says by which camera and when these were
     taken, None where it is not known. `of_measured` says how well deviations agree with the scan.
@@ -388,7 +388,7 @@ def check_of_the_day(
     progress: Progress = silent,
     kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Measure the poses of the interim check; () if its pictures are not of the day of the scan.
+    """Measure the poses of the interim check; () if it has no pictures from the day of the scan.
 
     They are looked for in the folder `kept` first, as by `measure_check`.
 

@@ -119,7 +119,7 @@ def compare_step(
     to: Path | None = None,
     progress: Progress = silent,
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare a scan with the surface in `other` and write the comparison into `to` (None: beside `source`).
+    """Compare a scan with the surface in `other`; write that into `to` (None: among the results of `source`).
 
     Returns the comparison and its files by their keys.
 

@@ -36,7 +36,7 @@ from core.report.content import ReportContent
 
 
 def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
-    """Choose the frame of coordinates for exported geometry: the part's own if it is known, or the camera's.
+    """Choose the frame for exported geometry: the part's own if known, else, or if `in_camera_frame`, the camera's.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
 
 
 class Results:
-    """Folder of results, with the user's texts; files are read when they are needed.
+    """Folder of results to be exported, with the user's texts; files are read when they are needed.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Results:
 
     @property
     def camera(self) -> CameraCalibration:
-        """Camera's calibration; InputError if there is none."""
+        """Calibration of the camera; InputError if there is none among the results."""
         return read_camera(self.folder / FILES["camera"])
 
     @property

@@ -263,7 +263,7 @@ class Thickness(NamedTuple):
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness:
-    """Measure the thickness and write gauge.json; if that fails, write the reason to run.json and return it."""
+    """Measure the thickness and write gauge.json or, instead of raising, write into run.json why there is none."""
     try:
         return Thickness(gauge_step(work, progress))
     except InputError as error:

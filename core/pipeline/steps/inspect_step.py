@@ -53,7 +53,7 @@ class InspectedScan:
 
 
 def open_scan(source: Path, results: Path | None = None) -> InspectedScan:
-    """Read the scan to be inspected.
+    """Read the scan to be inspected from a folder of results, a recording set or a cloud.ply.
 
     Parameters
     ----------

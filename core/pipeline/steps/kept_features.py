@@ -152,7 +152,7 @@ def poses_once(
     measure: Callable[[], tuple[PoseFeatures, ...]],
     progress: Progress = silent,
 ) -> tuple[PoseFeatures, ...]:
-    """Read the stored poses of an interim check in `folder`, or measure and store them.
+    """Read the poses of an interim check stored in `folder`, or call `measure` and store them there.
 
     `measure` has the `camera` and the `stripe` as well. In a folder that cannot be written to, it is not kept.
     """

@@ -18,7 +18,7 @@ from core.progress import Progress, silent
 def measured_master(
     folder: Path, certified_mm: float | None, project: Path | None = None, progress: Progress = silent
 ) -> Master:
-    """Read a master's measured length nearest to the certified one, with its budget and what speaks against its proof.
+    """Read a master's measured length nearest to the certified one, with its budget and what keeps it from proof.
 
     Parameters
     ----------

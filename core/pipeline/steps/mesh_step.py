@@ -80,7 +80,9 @@ def mesh_step(
     *,
     in_camera_frame: bool = False,
 ) -> tuple[Decimated, dict[str, Path]]:
-    """Write the prepared surface among `results` into the folder `to`, in each of the FORMATS named; mesh.ply stays.
+    """Prepare the mesh among `results` by `options`, and write it into `to` in each of the FORMATS named.
+
+    mesh.ply stays as it is.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ def measure_poses(
     stripe: StripeSettings | None = None,
     beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Find plane target and stripes in every pose; `stripe` is their width and contrast (None: found by itself).
+    """Find plane target and stripes in every pose; `stripe` is the stripes' width and contrast (None: estimated).
 
     A few are read at a time.
 

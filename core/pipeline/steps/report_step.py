@@ -157,7 +157,7 @@ def _artefacts(work: Workspace) -> tuple[ArtefactCheck, ...]:
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
-    """Collect the content of the results in the folder `out`, without the pictures and the rig they come from.
+    """Collect a report's content from the results in the folder `out` alone, without pictures and rig.
 
     `record` is what is known of the run; None: what run.json says.
 

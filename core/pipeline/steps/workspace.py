@@ -125,7 +125,7 @@ class Workspace:
             write_picture(make_folder(folder) / f"{name}-ridge.png", ridge)
 
     def written(self) -> dict[str, Path]:
-        """List the results that are there, by their keys in FILES."""
+        """List the paths of the results that have been written, by their keys in FILES."""
         return {name: self.path(name) for name in FILES if self.path(name).exists()}
 
     def calibration(self) -> Calibration:

@@ -199,7 +199,7 @@ class StoredPoses:
 
 
 def stored_poses_of(work: Workspace, calibration: Calibration) -> StoredPoses:
-    """Read the stored poses of the fan's calibration; those of a re-adjusted fan are from before that."""
+    """Read the stored poses of the fan's calibration; for a re-adjusted fan those from before re-adjustment."""
     try:
         return StoredPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
     except InputError as error:  # a scan needs nothing of them

@@ -58,7 +58,7 @@ def notes_on_focus(kept: StoredPoses, fan: Sequence[Centreline]) -> tuple[Messag
 
 
 def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Message, ...]:
-    """Make a note that the shutter is assumed to be global, if no row time is stated and sweeps do not show one."""
+    """Make a note that a global shutter is assumed, if no row time is stated and no rolling one shows; else ()."""
     if row_time_us is not None or scan.read_out.moves:
         return ()
     return (note_of("scan.shutter_assumed", field=Field("[camera] row_time_us")),)

@@ -20,7 +20,7 @@ Plates = Sequence[tuple[Pose, Sequence[Centreline]]]
 
 
 def part_light(solved: Solved, plates: Plates) -> PartLight | None:
-    """Compare the width of laser stripes on the part with that on the table; None where too little is seen to."""
+    """Compare the width of laser stripes on the part with that on the table; None where too little is known."""
     scan, camera = solved.scan, solved.calibration.camera.camera
     if scan.collapsed:
         return None

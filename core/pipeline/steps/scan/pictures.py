@@ -208,7 +208,7 @@ def _exposures(
 
 
 def feature_options(settings: Options) -> FeatureOptions:
-    """Make the options of extracting features from the pictures of a scan."""
+    """Make the options of extracting features from a scan's pictures, out of those of the whole measurement."""
     return FeatureOptions(sweep_stripe=settings.stripe, fan_stripe=settings.stripe)
 
 
@@ -257,7 +257,7 @@ def used_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
 def reference_picture(
     pictures: PictureReader, camera: Camera | None, settings: Options, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
-    """Read the picture with the fan alone, or make it from the frames, and note how it was made.
+    """Read the picture with the fan alone, or make it from the frames; return it with notes on how it was made.
 
     Raises
     ------

@@ -24,7 +24,7 @@ from core.stage_times import StageTimes, stage
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Measured:
-    """Results of the scan step in memory; the same is in its files."""
+    """Results of the scan step in memory: the solved scan and its mesh; its files hold the same."""
 
     scan: ScanResult
     mesh: Mesh
