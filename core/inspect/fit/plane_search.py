@@ -94,7 +94,10 @@ def find_planes(
 
 
 def above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -> NDArray[np.int64]:
-    """Select the points more than 3 `tolerance` (mm) before the largest plane, all if there is none; return indices."""
+    """Select the points nearer to the camera than the largest plane, by over 3 `tolerance` (mm); return their indices.
+
+    All points if there is no plane.
+    """
     planes = find_planes(cloud, seed=seed, progress=progress, most=1)
     if not planes:
         return np.arange(len(cloud))
