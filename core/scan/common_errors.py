@@ -82,7 +82,7 @@ class CommonErrors:
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
     def sigma_of(self, source: Source, cloud: Cloud) -> Array:
-        """Compute the standard uncertainty (N,) in mm of a cloud's depths that is due to one `source`; 0 without it."""
+        """Compute σ (N,) in mm of a cloud's depths that is due to one source of displacements; 0 if it has none."""
         variance = np.zeros(len(cloud))
         for one, change in zip(self.sources, self.changes(cloud.uv, cloud.sweep), strict=True):
             variance += change[:, 2] ** 2 if one == source else 0.0

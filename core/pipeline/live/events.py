@@ -82,7 +82,7 @@ ScanStage = Literal["reference", "ready", "scanning", "paused"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanDetail:
-    """State of a live scan for display: the last preview, new points, covered cells and counts of frames.
+    """State of a live scan for display: the last preview, the fan's lines, new points and covered cells.
 
     Parameters
     ----------

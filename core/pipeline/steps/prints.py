@@ -28,7 +28,7 @@ def write_target_sheet(
 
 
 def write_quick_card(path: Path, language: str = "en", paper: Paper = "A4") -> Path:
-    """Write the page to hang beside the rig, and return its path.
+    """Write a quick-reference page, a PDF to hang beside the rig, and return its path.
 
     Raises
     ------

@@ -269,7 +269,7 @@ def read_calibration(out: Path) -> Calibration:
 
 
 def check_calibration(path: Path, found_id: str, calibration: Calibration) -> None:
-    """Raise InputError if a result was measured with another calibration than the one beside it."""
+    """Raise InputError if the calibration's id `found_id` in a result is not that of `calibration`; "" passes."""
     if found_id and found_id != calibration.id:
         raise InputError(
             Message(

@@ -36,7 +36,7 @@ _SQUARES = 4
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Meetings:
-    """Segments of two pictures' centrelines that cut each other, in the order of the table of crossings.
+    """Pairs of segments of different pictures' centrelines that cut each other, in the order of the table of crossings.
 
     `picture`, `piece` and `point` (M, 2) are those of the sweep and of the fan or the later sweep: the picture (0: the
     fan), the piece among all, the first point of the segment among all. `compared` is how many pairs of runs of
@@ -67,7 +67,7 @@ def all_crossings(
 
 
 def meetings_of(lines: Stack, picture: Index) -> Meetings:
-    """Find the segments of different pictures' centrelines that cut each other; `picture` (P,) ascends, one a line."""
+    """Find where centrelines of different pictures cut each other; `picture` (P,), ascending, is that of each."""
     finite = np.isfinite(lines.boxes).all(axis=1)
     boxes = lines.boxes[finite]
     if not len(boxes):

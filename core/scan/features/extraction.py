@@ -186,7 +186,7 @@ def gather(
     progress: Progress = silent,
     smoothed: bool = True,
 ) -> ScanFeatures:
-    """Make the features of a scan: cross its centrelines as they were extracted, then average these along themselves.
+    """Make a scan's features: cross its centrelines as extracted, then, if `smoothed`, average them along themselves.
 
     `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
     centrelines stay as they are.

@@ -224,7 +224,7 @@ class Adjustment:
         return moved
 
     def noise(self, solution: Solution) -> csr_array:
-        """Make the matrix (M, …) from independent standard normal numbers to misclosures in 1/mm, fan's cells aside."""
+        """Make the matrix (M, …) from independent normal numbers of σ 1 to misclosures in 1/mm, fan's cells aside."""
         return csr_array(hstack([self._shared(solution), diags_array(np.sqrt(self._rest(solution)))], format="csr"))
 
     def _shared(self, solution: Solution) -> csr_array:

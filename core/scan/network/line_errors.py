@@ -60,7 +60,7 @@ class LineErrors:
 
     @classmethod
     def of(cls, crossings: CrossingTable) -> LineErrors:
-        """Take the errors from the table of crossings, or else those of means over twice its `half_length_px`."""
+        """Take the errors from the table of crossings or, if not known there, as of means over 2 `half_length_px`."""
         ends = (
             _End.known(
                 crossings.a,

@@ -102,7 +102,7 @@ def grid_shape(image_size: tuple[int, int], cell_px: float) -> tuple[int, int]:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
-    """Triangle mesh of the surface.
+    """Triangle mesh of a scan's surface, with σ of each vertex and a mark on triangles that only fill holes.
 
     Parameters
     ----------

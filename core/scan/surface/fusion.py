@@ -141,7 +141,7 @@ def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
 
 
 class Measured(NamedTuple):
-    """Measured values of the N points of a cloud, as fusion takes them."""
+    """Points, pixels, intensities, σ and sweeps of a cloud of N points, as arrays for fusing them."""
 
     points: Array
     uv: Array

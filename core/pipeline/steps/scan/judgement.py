@@ -168,7 +168,7 @@ def facts_of(
     too_fine_for_mosaic: bool | None,
     scan: ScanResult | None = None,
 ) -> ScanFacts:
-    """Add to the facts `of_the_day` those of the change since calibration, of the pictures and of the solved scan.
+    """Complete the facts that decide whether results can be proof by those of the change, the pictures and the scan.
 
     Without a `scan`, one picture was measured: within it nothing moves.
     """
