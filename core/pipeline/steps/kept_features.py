@@ -66,7 +66,7 @@ def _features_in(path: Path, key: str) -> ScanFeatures | None:
 
 
 def keep_features(pictures: PictureReader, settings: Options, camera: Camera, features: ScanFeatures) -> None:
-    """Store the features of a recording beside its frames; its pictures must all have been read, for their hashes.
+    """Store the features of a recording beside its frames; `pictures` must have taken the hashes of its files.
 
     Raises
     ------

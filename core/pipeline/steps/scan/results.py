@@ -56,7 +56,7 @@ def scan_file(
     settings: Options,
     light: PartLight | None,
 ) -> ScanFile:
-    """Collect the content of scan.npz; the pictures must all have been read, for their hashes."""
+    """Collect the content of scan.npz; `pictures` must have taken the hashes of the files it rests on."""
     shown = _shown(scan.frames)
     mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(
