@@ -84,7 +84,7 @@ Source = Cause | Message
 
 
 def message_of(source: Source) -> Message:
-    """Return the name of a source in words."""
+    """Return the words that name a source of uncertainty: a known `Cause`, or a name that a user gave it."""
     return source.message if isinstance(source, Cause) else source
 
 
@@ -123,12 +123,12 @@ _KNOWN = {str(one): one for one in Cause} | {one.message.code: one for one in Ca
 
 
 def known_cause(kept: Message) -> Source:
-    """Find the cause that a file names by its code, or in English as older files do; return others as they are."""
+    """Find the cause of uncertainty whose code or English name a results file holds; return any other name as it is."""
     return _KNOWN.get(kept.code or str(kept), kept)
 
 
 def cause_named(text: str) -> Source:
-    """Find the cause with this English name, as in plans, which people write; else return the text as it is.
+    """Find the cause of uncertainty with the English name `text`, as a plan has it; else return `text` as a message.
 
     Examples
     --------

@@ -68,27 +68,27 @@ class Characteristic:
 
     @property
     def by_master(self) -> bool:
-        """Whether the value was compared with a master: the certificate of that is in the budget then."""
+        """Whether the value was compared with a master, so that the master's certificate is in the budget."""
         return any(row.source is Cause.CERTIFICATE for row in self.budget)
 
     @property
     def U(self) -> float:
-        """Expanded uncertainty U = k u, in the value's unit."""
+        """Expanded uncertainty U = k u, in the unit of the value."""
         return self.k * self.u
 
     @property
     def deviation(self) -> float | None:
-        """Measured − nominal, in the value's unit, or None without limits."""
+        """Deviation, measured − nominal, in the unit of the value; None without limits."""
         return None if self.limits is None else self.value - self.limits.nominal
 
     @property
     def verdict(self) -> Verdict:
-        """Decision by ISO 14253-1; none without limits."""
+        """Verdict on conformity with the limits by ISO 14253-1; `Verdict.NONE` without limits."""
         return decide(self.value, self.limits, self.U, self.doubts)
 
     @property
     def room(self) -> float:
-        """Distance of the deviation, enlarged by U, from the nearest limit, as a share of half of what is permitted.
+        """Room between the deviation ± U and the nearest limit, as a share of half the width of the tolerance.
 
         Below 0 where a limit may be exceeded; infinite without limits, −inf where nothing is known.
         """
@@ -103,7 +103,7 @@ class Characteristic:
 
 
 def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
-    """Make the characteristic of a measured thickness."""
+    """Convert the measured thickness of a gauge result to a characteristic, a row of the list of results."""
     return Characteristic(
         name="thickness",
         kind="thickness",

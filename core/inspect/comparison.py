@@ -98,7 +98,7 @@ class SurfacePoints:
 
     @classmethod
     def of_cloud(cls, cloud: Cloud) -> SurfacePoints:
-        """Take the points of a scan; an error of depth counts as far as it lies across the surface."""
+        """Make surface points of a scan's cloud; each σ of depth is projected on the normal of the surface."""
         known = cloud.normals.any(axis=1)
         across = np.abs((cloud.normals * cloud.points).sum(axis=1)) / np.linalg.norm(cloud.points, axis=1)
         share = np.where(known, across, 1.0)
@@ -107,7 +107,7 @@ class SurfacePoints:
 
     @classmethod
     def bare(cls, points: Array, normals: Array | None = None, sigma: Array | None = None) -> SurfacePoints:
-        """Make points of another program: each errs by itself, by what their scatter shows or `sigma` in mm."""
+        """Make points (N, 3) in mm of another program, with independent errors of σ `sigma` (N,) in mm, or 0."""
         zero = np.zeros(len(points))
         return cls(
             points,
@@ -118,7 +118,7 @@ class SurfacePoints:
         )
 
     def select(self, keep: NDArray[np.int64] | NDArray[np.bool_]) -> SurfacePoints:
-        """Select the points by indices or flags `keep`."""
+        """Select the points that `keep` numbers by index or marks by a flag (N,)."""
         return SurfacePoints(
             self.points[keep], self.normals[keep], self.sigma[keep], self.sweep[keep], self.common[keep]
         )
@@ -128,12 +128,12 @@ class SurfacePoints:
         return replace(self, points=pose.apply(self.points), normals=self.normals @ pose.rotation.T)
 
     def without_common(self) -> SurfacePoints:
-        """Set the common uncertainty to 0, where it cancels or an alignment takes it."""
+        """Return the points with a common uncertainty of 0, as where it cancels or an alignment absorbs it."""
         return replace(self, common=np.zeros(len(self)))
 
 
 def sampled_surface(surface: Triangles, spacing_mm: float, most: int = 1_000_000) -> SurfacePoints:
-    """Sample places on triangles, evenly by area, about `spacing_mm` apart; at most `most`. They are exact."""
+    """Sample at most `most` points on triangles, evenly by area and about `spacing_mm` apart, with no uncertainty."""
     corners = surface.corners
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     count = int(np.clip(area.sum() / spacing_mm**2, min(1000, most), most))
@@ -200,22 +200,22 @@ class Comparison:
 
     @property
     def detectable(self) -> Array:
-        """Level of detection (N,) of a deviation in mm at 95 %."""
+        """Smallest deviation (N,) in mm that is significant at 95 %, at each core point."""
         return np.asarray(DETECTED * self.sigma)
 
     @property
     def significant(self) -> NDArray[np.bool_]:
-        """Whether (N,) the deviation is beyond the level of detection."""
+        """Flags (N,) of the core points whose deviation is larger than its level of detection at 95 %."""
         return np.asarray(np.abs(self.deviation) > self.detectable)
 
     @property
     def lower(self) -> Changed:
-        """Share and deviations in mm of places where material is missing, significantly."""
+        """Share of the core points where material is significantly missing, and their deviations in mm."""
         return self._changed(-1)
 
     @property
     def higher(self) -> Changed:
-        """Share and deviations in mm of places where there is more material, significantly."""
+        """Share of the core points where there is significantly more material, and their deviations in mm."""
         return self._changed(1)
 
     def _changed(self, side: int) -> Changed:
@@ -225,9 +225,9 @@ class Comparison:
         return Changed(len(there) / len(self), float(there.mean()), float(there[np.argmax(side * there)]))
 
     def at(self, points: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Look up the deviation (M,) in mm at points (M, 3) of the surface, NaN where none is near, and if significant.
+        """Look up the deviation (M,) in mm at points (M, 3) in mm, NaN if far off, and if it is significant (M,).
 
-        That of the nearest core point within a diameter.
+        The deviation is that of the nearest core point within a diameter.
         """
         away, nearest = cKDTree(self.points).query(points, distance_upper_bound=self.diameter_mm)
         known = np.isfinite(away)
@@ -238,7 +238,7 @@ class Comparison:
 def compare(
     surface: SurfacePoints, other: SurfacePoints, scales: ComparisonScales, progress: Progress = silent
 ) -> Comparison:
-    """Compare a surface with another one that lies in the same frame; normals are those of `surface`.
+    """Compute the deviations in mm of one surface from another one in the same frame, along the normals of `surface`.
 
     Raises
     ------

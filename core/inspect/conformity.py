@@ -21,7 +21,7 @@ class Verdict(StrEnum):
 
     @classmethod
     def worst(cls, verdicts: Iterable[Verdict]) -> Verdict:
-        """Choose the worst of several on one part: does not conform, then not proven; NONE where nothing is asked."""
+        """Choose the worst of the verdicts on one part: NOT_CONFORMING before NOT_PROVEN; NONE if there is none."""
         found = set(verdicts)
         return next((one for one in WORST_FIRST if one in found), cls.NONE)
 
@@ -57,7 +57,7 @@ class Limits:
 
 
 def decide(value: float, limits: Limits | None, U: float, doubts: Doubts, *, r: float = 1.0) -> Verdict:
-    """Decide on conformity with limits by ISO 14253-1, for the maker of a part: the only place where a verdict is made.
+    """Decide by ISO 14253-1, as the maker of a part does, what `value` ± `U` proves about `limits`; NONE if None.
 
     The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
     nonconformity; between the two nothing is proven. Nor is anything by a value or an uncertainty that is not known.
@@ -152,18 +152,18 @@ class Zones:
 
     @property
     def conformance(self) -> tuple[float, float] | None:
-        """Values that prove conformity, both ends included; None if the guard bands leave none."""
+        """Smallest and largest deviation that prove conformity; None if the guard bands leave none."""
         low, high = self.lower + self.guard_band, self.upper - self.guard_band
         return (low, high) if low <= high else None
 
     @property
     def nonconformance(self) -> tuple[float, float]:
-        """Two values: below the first or above the second nonconformity is proven."""
+        """Two deviations: any below the first or above the second proves nonconformity."""
         return self.lower - self.guard_band, self.upper + self.guard_band
 
     @property
     def uncertainty(self) -> tuple[tuple[float, float], ...]:
-        """Zones in which nothing is proven: about each limit there is, or all at once where they meet."""
+        """Zones (lower, upper) of deviations that prove nothing: one about each finite limit, or one in all."""
         low, high = self.nonconformance
         if self.conformance is None:
             return ((low, high),)

@@ -67,12 +67,12 @@ class Inspection:
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Characteristics of all features, in their order."""
+        """Characteristics of all features of the plan, in the plan's order."""
         return tuple(row for result in self.results for row in result.characteristics)
 
     @property
     def problems(self) -> tuple[Message, ...]:
-        """Reasons why features could not be measured."""
+        """Messages that say why a feature could not be measured, one for each such feature."""
         return tuple(result.problem for result in self.results if result.problem)
 
     def result(self, name: str) -> FeatureResult:
@@ -81,12 +81,12 @@ class Inspection:
 
     @property
     def unmeasured(self) -> bool:
-        """Whether a feature with limits could not be measured."""
+        """Whether any feature that has limits could not be measured."""
         return any(result.problem and result.spec.limits for result in self.results)
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict of the plan alone: that on the part holds a thickness measured beside it as well."""
+        """Verdict on the features of the plan alone, without a thickness that was measured beside the plan."""
         return ResultList(None, self.characteristics, self.unmeasured).verdict
 
 
@@ -100,7 +100,7 @@ def evaluate(
     *,
     nominals: Mapping[str, Triangles] | None = None,
 ) -> Inspection:
-    """Measure all features of a plan.
+    """Measure all features of a plan on a cloud; results of `previous` that the plan has not changed are reused.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Region:
         margin_mm: float,
         smallest_part: float = SMALL_PART,
     ) -> Region:
-        """Compute the region covered by `points[near]`, all close to the plane with unit `normal`, less a margin.
+        """Compute the region, less a margin, that `points[near]` cover on the plane with the unit normal `normal` (3,).
 
         The points are laid out on the plane in cells of 0.5 mm and the gaps between stripes closed, the wider the
         further apart the stripes are; parts smaller than `smallest_part` of the largest are left out.
@@ -58,7 +58,7 @@ class Region:
 def region_on(
     cloud: Cloud, near: NDArray[np.int64], normal: Array, margin_mm: float, smallest_part: float = SMALL_PART
 ) -> Region:
-    """Compute the region of a face that the points `near` (n,) of a cloud lie on, less a margin.
+    """Compute the region, less a margin, of the face of a cloud that the points with the indices `near` (n,) cover.
 
     A face that no sweep reaches is known by the fan's lines alone, and these lie as far apart as the rig has them: what
     is between two of them is no edge. Where several lines see it, each is cut by the margin at its own ends, and stands
@@ -90,7 +90,7 @@ def _pieces(points: Array, line: NDArray[np.int64]) -> Iterator[tuple[NDArray[np
 def connected_with(
     points: Array, near: NDArray[np.int64], elsewhere: NDArray[np.int64], normal: Array, place: Array
 ) -> NDArray[np.int64]:
-    """Select those of `points[near]` (at least one) on one face with the one nearest to `place`; return their indices.
+    """Select those of `points[near]` on one connected face with the one nearest to `place` (3,); return indices.
 
     They are laid out as for `Region.of`, seen along `normal`; gaps as wide as those between stripes are bridged unless
     points of something else, `points[elsewhere]`, lie in them.
@@ -178,7 +178,7 @@ def _without_small_parts(covered: NDArray[np.uint8], smallest_part: float) -> ND
 
 
 def inside_polygon(uv: Array, corners: Array) -> NDArray[np.bool_]:
-    """Test which of `uv` (N, 2) lie inside the polygon `corners` (n, 2), by the even–odd rule."""
+    """Compute flags (N,) of the pixels `uv` (N, 2) inside the polygon `corners` (n, 2), by the even–odd rule."""
     inside = np.zeros(len(uv), dtype=np.bool_)
     for (u0, v0), (u1, v1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         spans = (v0 > uv[:, 1]) != (v1 > uv[:, 1])
@@ -188,7 +188,7 @@ def inside_polygon(uv: Array, corners: Array) -> NDArray[np.bool_]:
 
 
 def on_face(points: Array, used: Array, normal: Array, distance: float) -> NDArray[np.bool_]:
-    """Test which of `points` (N, 3) lie on a face: within its thickness of noise, and no farther aside than a gap.
+    """Compute flags (N,) of the `points` (N, 3) in mm on a face: close to its plane and to its points `used` (M, 3).
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ _REGION_FIELDS = {
 
 
 def region_field(face: str) -> Message:
-    """Return the field of rig.toml with the region of a face; a window names it as a region of the picture."""
+    """Return the name of the rig.toml field that holds the polygon of a face, "upper" or "lower"."""
     return _REGION_FIELDS[face]
 
 
@@ -84,7 +84,7 @@ def find_faces(
     seed: int = 0,
     progress: Progress = silent,
 ) -> FacePair:
-    """Find the two largest parallel faces, or, of several pairs of like size, the pair nearest to a nominal thickness.
+    """Find the two largest parallel faces of a cloud; of pairs of similar size, the one nearest to `nominal_mm` apart.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def faces_in_polygons(
     *,
     margin_mm: float = 1.5,
 ) -> FacePair:
-    """Find the largest plane inside each of two polygons (n ≥ 3, 2) in pixels of the picture.
+    """Find the upper and the lower face: the largest plane inside each of two polygons (n ≥ 3, 2) in pixels.
 
     A polygon may reach over the edge of its face: the margin is taken from the face's own edge, not from the polygon's.
 
@@ -269,7 +269,7 @@ def faces_in_polygons(
 
 
 def face_inside(cloud: Cloud, inside: NDArray[np.bool_], *, margin_mm: float = 1.5) -> NDArray[np.int64]:
-    """Find the largest plane among the points `inside` (N,); return its indices, less the margin of the whole face."""
+    """Find the largest plane among the points marked in `inside` (N,); return their indices, less a margin."""
     part = cloud.select(inside)
     tolerance = search_tolerance(part)
     plane = largest_plane(part, tolerance, 0.0, seed=0)

@@ -34,7 +34,7 @@ def free_faces(
     *,
     tilt_determined: bool,
 ) -> tuple[Face, Face]:
-    """Fit the upper and the lower face of a `pair` in a cloud, each freely.
+    """Fit a plane with its flatness to the upper and to the lower face of a `pair`, independently of each other.
 
     Points that do not span a face leave open how it lies: it is that of the `joint` fit then, without flatness, which
     is asked for only then, or where it is not `tilt_determined`. Both are fitted at once; a StageTimes learns what that
@@ -54,7 +54,7 @@ def free_faces(
 
 
 def angle_of(upper: Face, lower: Face) -> float | None:
-    """Compute the angle in rad between two faces, 0 to π/2; None if one of them is not spanned by its points."""
+    """Compute the angle in rad, 0 to π/2, between two faces; None if the points of one do not determine its plane."""
     if not (upper.spanned and lower.spanned):
         return None
     cross = np.linalg.norm(np.cross(upper.plane.normal, lower.plane.normal))

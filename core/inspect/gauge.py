@@ -71,7 +71,7 @@ class GaugeFit:
 
     @property
     def planes(self) -> ParallelPlaneFit:
-        """Planes of the joint fit."""
+        """Two parallel planes of the joint fit to both faces."""
         return self.faces.planes
 
     @property
@@ -88,7 +88,7 @@ def fit_gauge(
     nominal_mm: float | None = None,
     progress: Progress = silent,
 ) -> GaugeFit:
-    """Find the two parallel faces of a part and fit planes to them.
+    """Find the two parallel faces of a part in a cloud, and fit two parallel planes to them.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def measure_gauge(
     k: float = 2.0,
     progress: Progress = silent,
 ) -> GaugeResult:
-    """Measure the thickness, with uncertainty and verdict.
+    """Measure the thickness of a part in a cloud in mm, with its uncertainty and, if limits are given, its verdict.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _notes_on_form(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, error
 
 
 def doubted(gauge: GaugeResult, doubts: Doubts) -> GaugeResult:
-    """Set the doubts by which the thickness, if there are any, proves nothing, and put the notes on them first."""
+    """Set the doubts of a thickness, reasons why it proves nothing, and put the notes on them before the others."""
     return replace(gauge, notes=(*notes_of(doubts), *gauge.notes), doubts=doubts)
 
 
@@ -248,7 +248,7 @@ def adjusted(
     *,
     k: float = 2.0,
 ) -> GaugeResult:
-    """Add a correction in mm to the thickness, and further rows to its budget.
+    """Add a correction in mm to a measured thickness, and the rows of that correction to its uncertainty budget.
 
     `k` is the coverage factor where u is known.
     """

@@ -67,7 +67,7 @@ class Geometry:
 
 
 def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Outline]:
-    """Compute outlines of planes square to `normal` (3,) through `centres` (c, 3) by the points (n, 3) nearest each."""
+    """Compute the convex outlines of planes square to `normal` (3,) through `centres` (c, 3) by their points."""
     away = np.abs((points[:, None] - centres[None]) @ normal)
     nearest = np.argmin(away, axis=1)
     across = np.linalg.svd(normal[None])[2][1:]
@@ -83,13 +83,13 @@ def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Ou
 
 
 def cylinder(name: str, centre: Array, direction: Array, radius: float, points: Array) -> CylinderShape:
-    """Make a cylinder from the first to the last of its points (n, 3), n ≥ 1, along the axis."""
+    """Make the shape of a cylinder, as long as its points (n, 3), n ≥ 1, reach along the axis; lengths in mm."""
     along = (points - centre) @ direction
     return CylinderShape(name, centre + np.outer([along.min(), along.max()], direction), radius)
 
 
 def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float) -> list[Curve]:
-    """Compute pieces of a section's mean curve: `profile` (n, 2) is position and height along the two `axes` (2, 3)."""
+    """Compute the mean curve of a section, in pieces, from positions and heights along `axes` (2, 3), in mm."""
     position, height = averaged(profile[:, 0], profile[:, 1], step_mm)
     ends = np.flatnonzero(np.diff(position) > LONGEST_GAP * step_mm) + 1
     places = origin + np.column_stack([position, height]) @ axes
@@ -97,7 +97,7 @@ def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float
 
 
 def moved(drawn: Sequence[Shape], pose: Pose) -> list[Shape]:
-    """Move shapes by a pose."""
+    """Transform shapes by a pose, in mm."""
     made: list[Shape] = []
     for one in drawn:
         match one:

@@ -60,12 +60,12 @@ class Profile:
         return np.asarray(np.cross(self.along, self.up))
 
     def between(self, ends: tuple[float, float]) -> NDArray[np.int64]:
-        """Select the points between two positions in mm; return numbers into `indices`."""
+        """Select the profile's points between two positions in mm; return their places (m,) in the profile's arrays."""
         return np.flatnonzero((self.position >= min(ends)) & (self.position <= max(ends)))
 
 
 def averaged(position: Array, height: Array, step_mm: float) -> tuple[Array, Array]:
-    """Compute the medians of heights over steps along a profile, and the mean positions; empty steps are left out."""
+    """Average a profile over steps of `step_mm`: mean positions and median heights in mm; empty steps are left out."""
     if not len(position):
         return np.zeros(0), np.zeros(0)
     step = np.floor((position - position.min()) / step_mm).astype(np.int64)
@@ -77,7 +77,7 @@ def averaged(position: Array, height: Array, step_mm: float) -> tuple[Array, Arr
 
 
 def usual_stretches(position: Array, height: Array) -> tuple[Stretch, Stretch]:
-    """Choose two stretches, from and to in mm, of a profile averaged over steps: the lower one first.
+    """Propose two stretches (from, to) in mm of an averaged profile to measure a step between, the lower first.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class Stretch:
 
 
 def stretches(cloud: Cloud, correlation_px: float = 8.0) -> tuple[Stretch, ...]:
-    """Find the straight stretches of all profiles in the `cloud` of one picture, in order along each line.
+    """Find the straight pieces of the light profiles in one picture's `cloud`, in order along each laser line.
 
     `correlation_px` is the length along a line over which its noise counts as one.
     """
@@ -68,7 +68,7 @@ def stretches(cloud: Cloud, correlation_px: float = 8.0) -> tuple[Stretch, ...]:
 
 
 def faces_of(cloud: Cloud, found: Sequence[Stretch], normal: Array | None) -> FacePair | None:
-    """Choose the two levels that are longest on lines they have in common; None if there are no two.
+    """Choose the upper and the lower face: the two longest levels seen on common laser lines; None if there are no two.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def _common_normal(levels: _TwoLevels) -> Array:
 
 
 def level_limit(cloud: Cloud) -> float:
-    """Compute the difference of heights in mm below which they are of one level."""
+    """Compute the largest difference in mm between the heights of stretches that count as one level."""
     return _limit(cloud, LEVEL_SIGMAS, LEVEL_MM)
 
 

@@ -32,22 +32,22 @@ class ResultList:
     def of(
         cls, gauge: GaugeResult | None, inspected: Iterable[Characteristic] = (), *, unmeasured: bool = False
     ) -> ResultList:
-        """Make the list from a measured thickness and the results of a plan."""
+        """Make the list of results from a thickness, if one was measured, and the characteristics of a plan."""
         return cls(None if gauge is None else thickness_characteristic(gauge), tuple(inspected), unmeasured)
 
     @property
     def rows(self) -> tuple[Characteristic, ...]:
-        """All results, the gauge's thickness first."""
+        """All characteristics measured on the part, the gauge's thickness first."""
         return self.inspected if self.thickness is None else (self.thickness, *self.inspected)
 
     @property
     def worst_first(self) -> tuple[Characteristic, ...]:
-        """Results by their verdicts, worst first, and those of one verdict by the room that is left to their limits."""
+        """Characteristics sorted by verdict, the not conforming first, then by room to the limits, the least first."""
         order = (*WORST_FIRST, Verdict.NONE)
         return tuple(sorted(self.rows, key=lambda one: (order.index(one.verdict), one.room)))
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on the part: the worst of all rows, and at best "not proven" where something is unmeasured."""
+        """Verdict on the part: the worst verdict of its characteristics; not proven at best if one was not measured."""
         missing = (Verdict.NOT_PROVEN,) if self.unmeasured else ()
         return Verdict.worst((*(one.verdict for one in self.rows), *missing))

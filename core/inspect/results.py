@@ -69,12 +69,12 @@ class Contribution:
 
     @property
     def words(self) -> Message:
-        """Name of the source, in words."""
+        """Name of the source of uncertainty, in words."""
         return message_of(self.source)
 
     @property
     def sensitivity(self) -> float | None:
-        """Sensitivity |c| of the result to the input, in the result's unit per `unit`; None where it is not known."""
+        """Sensitivity |c| of the result to the input, in the result's unit per `unit`; None if not known."""
         return self.u_mm / self.point_mm if self.point_mm else None
 
 
@@ -151,7 +151,7 @@ class GaugeResult:
 
     @property
     def U_mm(self) -> float:
-        """Expanded uncertainty U = k u."""
+        """Expanded uncertainty U = k u of the thickness, in mm."""
         return self.k * self.u_mm
 
     @property
@@ -161,10 +161,10 @@ class GaugeResult:
 
     @property
     def verdict(self) -> Verdict:
-        """Decision by ISO 14253-1; none without limits."""
+        """Verdict on the thickness by ISO 14253-1; `Verdict.NONE` without limits."""
         return decide(self.thickness_mm, self.limits, self.U_mm, self.doubts)
 
     @property
     def deviation_mm(self) -> float | None:
-        """Measured − nominal in mm, or None without a nominal value."""
+        """Deviation of the thickness, measured − nominal, in mm; None without a nominal value."""
         return None if self.nominal_mm is None else self.thickness_mm - self.nominal_mm

@@ -89,17 +89,17 @@ class Step:
 
     @property
     def thickness_mm(self) -> float:
-        """Distance between the two planes, in mm."""
+        """Distance in mm between the two parallel planes fitted in this picture."""
         return self.faces.planes.thickness
 
     @property
     def own_mm(self) -> float:
-        """Standard uncertainty in mm that is this picture's own: noise and form."""
+        """Standard uncertainty in mm of this picture's own, by noise and form, which other pictures do not share."""
         return float(math.hypot(*(float(np.linalg.norm(one.factor)) for one in self.effects if not one.shared)))
 
 
 def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) -> Step | Message:
-    """Measure the step in one picture; return a message that says why if there is none.
+    """Measure the step between two faces in one picture; return a message instead if it shows none.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
 
 
 def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
-    """Compute unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
+    """Compute two unit vectors (3,): along the profiles, to the right in the picture, and up, against the normal."""
     points = cloud.points - cloud.points.mean(axis=0)
     flat = points - np.outer(points @ step_normal, step_normal)
     along = np.linalg.svd(flat, full_matrices=False)[2][0]
@@ -210,7 +210,7 @@ def measure_steps(
     tolerance_mm: float | None = None,
     k: float = 2.0,
 ) -> GaugeResult:
-    """Combine the thickness of all pictures, with its uncertainty and verdict.
+    """Combine the thicknesses of several pictures into one, with its uncertainty and verdict.
 
     Parameters
     ----------

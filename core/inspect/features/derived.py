@@ -10,7 +10,7 @@ from core.messages import Message
 
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure the distance of two points, of a point from a plane or an axis, or of a plane's middle from a plane."""
+    """Measure the distance in mm between two points, from a point to a plane or an axis, or between two planes."""
     a, b = elements_of(spec, scene)
     return derived_result(spec, scene, "distance", distance(a, b))
 
@@ -21,14 +21,14 @@ def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def derived_result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
-    """Make the result of a feature that is made of others: one row, with the notes on these."""
+    """Make the result of a feature that is computed from other features, with the notes on those features."""
     notes = tuple(note for name in dict.fromkeys(spec.of) for note in scene.found[name].notes)
     row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule, notes=notes)
     return FeatureResult(spec, characteristics=(row,))
 
 
 def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, ...]:
-    """Collect the elements a feature is made of; InputError if one of them was not measured."""
+    """Collect the plane, axis or point of each feature that `spec` refers to; InputError if one was not measured."""
     elements = []
     for name in spec.of:
         element = scene.found[name].element
@@ -42,7 +42,7 @@ def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, ...]:
 
 
 def directions_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
-    """Collect the two elements of a feature of directions; InputError if one is a point or was not measured."""
+    """Collect the two planes or axes that `spec` refers to; InputError if one is a point or was not measured."""
     a, b = elements_of(spec, scene)
     if "point" in (a.kind, b.kind):
         raise InputError(

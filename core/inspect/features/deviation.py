@@ -39,7 +39,7 @@ LARGEST = 0.95
 
 
 def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Lay the nominal surface on the scan and compare; InputError if it does not fit or is not there."""
+    """Align a nominal surface with the scan and measure the deviation; InputError if it fails or none was read."""
     if spec.deviation is None or spec.deviation.nominal not in scene.nominals:
         raise InputError(
             Message("feature.nominal_not_read", "its nominal surface was not read"),

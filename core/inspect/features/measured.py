@@ -124,7 +124,7 @@ class Scene:
     found_planes: dict[float, tuple[FoundPlane, ...]] = field(default_factory=dict)
 
     def planes(self, margin_mm: float) -> tuple[FoundPlane, ...]:
-        """Find the plane faces of the cloud, once for each margin."""
+        """Find the plane faces of the cloud, less `margin_mm` at their edges; computed once for each margin."""
         if margin_mm not in self.found_planes:
             self.ensure_normals()
             found = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
@@ -132,7 +132,7 @@ class Scene:
         return self.found_planes[margin_mm]
 
     def ensure_normals(self) -> None:
-        """Estimate the cloud's normals where the file had none."""
+        """Estimate the normals of the cloud if all are zero, as in a file without normals."""
         if len(self.cloud) >= 3 and not self.cloud.normals.any():
             self.cloud = with_normals(self.cloud, progress=self.progress)
 
@@ -148,7 +148,7 @@ class Scene:
         notes: tuple[Message, ...] = (),
         doubts: Doubts = (),
     ) -> Characteristic:
-        """Make the row for `result` of a feature, as "ball diameter"; "": the row of its `kind`.
+        """Make a characteristic of a feature, named after `result`, as "ball diameter", or, if "", its `kind`.
 
         It proves nothing by the doubts of the scan, nor by the `doubts` of its points; one of their light is seen in
         its budget. Its notes tell of all but those of the scan.

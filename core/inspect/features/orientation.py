@@ -32,7 +32,7 @@ MOST_ASKEW = np.pi / 4
 
 
 def measure_parallelism(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure how far the first feature is from parallel to the second, its datum, as the width of a zone in mm.
+    """Measure the parallelism of a feature to a second one, its datum, as the width of the tolerance zone in mm.
 
     InputError if one of them is a point or was not measured, or they lie more than 45° from parallel.
     """
@@ -40,7 +40,7 @@ def measure_parallelism(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def measure_perpendicularity(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure how far the first feature is from perpendicular to the second, as the width of a zone in mm.
+    """Measure the perpendicularity of a feature to a second one, its datum, as the width of the tolerance zone in mm.
 
     InputError if one of them is a point or was not measured, or they lie more than 45° from perpendicular.
     """

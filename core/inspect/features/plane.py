@@ -20,7 +20,7 @@ from core.messages import Message
 
 
 def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Fit a plane to the face of the region; InputError if there is none."""
+    """Fit a plane to the plane face in the feature's region, with its flatness; InputError if there is none."""
     indices = face_in(spec.regions[0], spec.filters, scene)
     fit = _fitted(spec, scene, indices)
     assert fit.form is not None
@@ -35,7 +35,7 @@ def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure the place amid the points of a small region, on the plane through them.
+    """Measure one point: the middle of the points of a small region, on the plane fitted to them.
 
     Of that piece of surface the residuals are judged as those of a face; the place itself rests on three numbers of it,
     and of one measured point nothing is left over that could be judged.

@@ -35,7 +35,7 @@ STEP = 1e-4
 
 
 def measure_position(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure twice the distance of a sphere's centre or a cylinder's axis from its true place.
+    """Measure the position of a sphere or a cylinder: twice the distance in mm of its centre or axis from nominal.
 
     Raises
     ------

@@ -25,7 +25,7 @@ SEEDS = 4
 
 
 def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
-    """Select the points of a region that pass the filter by σ, all of the cloud's if it is to be found; return indices.
+    """Select the points of a region whose σ is within the filter's limit; return their indices into the cloud.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
 
 
 def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> GrownFace:
-    """Grow the face that goes on from a place, of this kind; None: the simplest that the points allow.
+    """Grow the face that contains the place of `region`, as a shape of the given kind; None: as the simplest that fits.
 
     Raises
     ------
@@ -72,13 +72,13 @@ def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> Grow
 
 
 def sure_enough(indices: Indices, filters: Filters, scene: Scene) -> Indices:
-    """Select those of the points that pass the filter by σ; return their indices, ascending."""
+    """Select those of `indices` whose points have a σ within the filter's limit; return them ascending."""
     allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
     return np.sort(indices[scene.cloud.sigma[indices] <= allowed])
 
 
 def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
-    """Select the points of the plane face in a region, less its margin; return their indices.
+    """Select the points of the plane face in a region, except those near the face's edge; return their indices.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _no_face(count: int) -> InputError:
 
 
 def in_part(points: Array, scene: Scene) -> Array:
-    """Transform points (N, 3) in mm of the camera frame into part coordinates."""
+    """Transform points (N, 3) in mm from the camera frame into part coordinates; unchanged if there are none."""
     return points if scene.pose_camera_part is None else scene.pose_camera_part.inverse().apply(points)
 
 

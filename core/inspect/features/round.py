@@ -17,7 +17,7 @@ from core.messages import Message
 
 
 def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Fit a sphere to the points of the region that lie on one; InputError if they do not."""
+    """Measure diameter and form of a sphere on the points of the region that lie on one; InputError if none do."""
     scene.ensure_normals()
     region, cloud = spec.regions[0], scene.cloud
     if isinstance(region, FaceAt):
@@ -42,7 +42,7 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Fit a cylinder to the points of the region that lie on one; InputError if they do not."""
+    """Measure diameter and form of a cylinder on the points of the region that lie on one; InputError if none do."""
     scene.ensure_normals()
     region, cloud, filters = spec.regions[0], scene.cloud, spec.filters
     if isinstance(region, FaceAt):

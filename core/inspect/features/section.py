@@ -38,7 +38,7 @@ class _Plane:
 
 
 def measure_section(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Lay out the profile of a section and measure its cuts."""
+    """Compute the profile of a cross-section and measure the heights, distances and radii asked for in it."""
     if spec.section is None:
         raise InputError(
             Message("feature.section_without_place", "it does not say where to cut"),

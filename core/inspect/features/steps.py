@@ -19,7 +19,7 @@ from core.messages import Message
 
 
 def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure the heights of levels, the lowest being the farthest from the camera; InputError if there is but one."""
+    """Measure the heights of parallel levels over the lowest, the farthest from the camera; InputError if but one."""
     faces = _levels(spec, scene)
     indices = np.concatenate(faces)
     part = np.repeat(np.arange(len(faces)), [len(face) for face in faces])

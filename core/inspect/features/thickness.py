@@ -17,7 +17,7 @@ from core.messages import Message
 
 
 def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """Measure the thickness between the faces of two regions (upper, lower), or the two largest parallel faces."""
+    """Measure the thickness between the faces in two regions (upper, lower), or the two largest parallel faces."""
     scene.ensure_normals()
     gauge = measure_gauge(
         scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress

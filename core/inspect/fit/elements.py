@@ -49,7 +49,7 @@ class Element:
 
     @classmethod
     def of_plane(cls, fit: SurfaceFit[ParallelPlanes], kind: Literal["plane", "point"] = "plane") -> Element:
-        """Make the element of one face's plane, or of the point amid it; along the face its place is taken as known."""
+        """Make the element of a fitted plane face, or of the point in the middle of its points."""
         levels = fit.shape
         gradient = levels.normal_gradient
         along = np.zeros_like(gradient)
@@ -58,14 +58,14 @@ class Element:
 
     @classmethod
     def of_sphere(cls, fit: SurfaceFit[Sphere]) -> Element:
-        """Make the element of a sphere's centre."""
+        """Make the element of a fitted sphere: its centre as a point."""
         gradient = np.hstack([np.eye(3), np.zeros((3, 1))])
         away = fit.shape.centre / np.linalg.norm(fit.shape.centre)
         return cls("point", fit.shape.centre, -away, gradient, np.zeros((3, 4)), fit.effects)
 
     @classmethod
     def of_cylinder(cls, fit: SurfaceFit[Cylinder]) -> Element:
-        """Make the element of a cylinder's axis."""
+        """Make the element of a fitted cylinder: its axis."""
         tube = fit.shape
         return cls("axis", tube.centre, tube.direction, tube.centre_gradient, tube.direction_gradient, fit.effects)
 
@@ -79,7 +79,7 @@ class Derived(NamedTuple):
 
 
 def distance(a: Element, b: Element) -> Derived:
-    """Compute the distance in mm of the place of `a` from `b`, with its budget.
+    """Compute the distance in mm between two elements (plane, axis or point), with its uncertainty budget.
 
     From a plane square to it, from an axis square to it, from a point straight. Of two of which one is a plane (else an
     axis), the distance is that of the other's place from it; of two planes, of the first one's middle from the second.
@@ -111,7 +111,7 @@ def distance(a: Element, b: Element) -> Derived:
 
 
 def angle(a: Element, b: Element) -> Derived:
-    """Compute the angle in rad, 0 to π/2, between two planes, two axes, or an axis and a plane, with its budget."""
+    """Compute the angle in rad, 0 to π/2, between two planes, two axes or an axis and a plane, and its uncertainty."""
     first, second = a.direction, b.direction
     second = second if first @ second >= 0 else -second
     flip = 1.0 if second is b.direction else -1.0

@@ -63,14 +63,14 @@ class FormZone:
 
     @property
     def u(self) -> float:
-        """Standard uncertainty of the width, in mm."""
+        """Standard uncertainty in mm of the zone's width."""
         return combined(self.budget)
 
 
 def form_zone(
     residuals: Array, points: Array, outward: Array, sources: Sources, fit: Generalised, design: Array, cell_mm: float
 ) -> FormZone:
-    """Estimate the zone that holds the form of a surface from the residuals of its fit.
+    """Estimate from a fit's residuals the width in mm of the zone that holds the surface's form, free of noise.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class Generalised:
 
 
 def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Array | None = None) -> Generalised:
-    """Fit β to `misfit` (J,) in mm = `design` (J, p) · β by robust generalised least squares with errors of `sources`.
+    """Fit parameters β to `misfit` (J,) in mm = `design` (J, p) · β by robust generalised least squares.
 
     The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
     """

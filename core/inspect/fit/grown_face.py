@@ -77,7 +77,7 @@ class GrownFace:
 
 
 def grow_face(cloud: Cloud, seed: int, kind: FaceKind | None = None) -> GrownFace:
-    """Grow the face that the point with the index `seed` lies on.
+    """Grow the face around the point with the index `seed`, as a plane, sphere or cylinder; None: the simplest.
 
     Parameters
     ----------

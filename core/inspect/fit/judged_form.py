@@ -83,7 +83,7 @@ ABOVE, BELOW = Message("form.above", "above"), Message("form.below", "below")
 
 
 def level(number: int) -> Message:
-    """Make the name of a level, from 1."""
+    """Make the name of a level of a stepped part: "level 1", "level 2", …."""
     return Message("form.the_level", "level {n}", n=number)
 
 
@@ -107,19 +107,19 @@ class Left:
 
     @classmethod
     def of(cls, shape: Shape, points: Array, part: Parts) -> Left:
-        """Compute the misfits of `points` (N, 3) in mm beside a fitted shape, on its faces `part` (N,)."""
+        """Compute the distances (N,) of `points` (N, 3) in mm from a fitted shape; `part` (N,) numbers their faces."""
         outward = np.asarray(shape.outward(points, part), dtype=np.float64)
         return cls(shape.misfit(points, part), outward, shape.design(points, part))
 
     def each_slanted(self, points: Array, part: Parts) -> Left:
-        """Add a slant of each face but the first to the design; return the misfits with it."""
+        """Return the distances with a design that lets each face but the first tilt by itself."""
         away = (points - points.mean(axis=0))[:, :2] / max(float(np.abs(points[:, :2]).max()), 1e-9)
         slants = [np.where(part[:, None] == one, away, 0.0) for one in np.unique(part)[1:]]
         return Left(self.misfit, self.outward, np.hstack([self.design, *slants]))
 
     @classmethod
     def of_nominal(cls, points: Array, deviation: Array, normals: Array) -> Left:
-        """Make the misfits of deviations (N,) in mm, less their median, from a nominal surface that may move and swell.
+        """Make the residuals of deviations (N,) in mm from a nominal surface that may be moved, turned and offset.
 
         Motions that leave the surface where it is are not in the design.
         """
@@ -149,12 +149,12 @@ class Places:
 
     @classmethod
     def in_picture(cls, uv: Array, part: Parts) -> Places:
-        """Number the patches of the picture, over each face's extent, that points `uv` (N, 2) in px lie in."""
+        """Assign each of the pixels `uv` (N, 2) to a patch of its face, numbered in `part` (N,)."""
         return cls(patches(uv, part).astype(np.intp), (PATCHES, PATCHES), np.zeros((0, 2)))
 
     @classmethod
     def in_section(cls, position: Array, part: Parts) -> Places:
-        """Number the parts of a section's stretches that points at `position` (N,) in mm lie in."""
+        """Assign each of the positions (N,) in mm along a section to an interval of its stretch, `part` (N,)."""
         cell, ends = np.zeros(len(position), dtype=np.intp), []
         for number in range(int(part.max(initial=0)) + 1):
             here = part == number
@@ -164,15 +164,15 @@ class Places:
 
     @property
     def number(self) -> int:
-        """Number of places of a face."""
+        """Number of places (patches or intervals) that one face is divided into."""
         return int(np.prod(self.sides))
 
     def of_face(self, number: int) -> slice:
-        """Return the slice of the places of one face among those of all."""
+        """Return the slice that one face's places have in an array over the places of all faces."""
         return slice(self.number * number, self.number * (number + 1))
 
     def flat(self, place: NDArray[np.intp]) -> Array:
-        """Compute where (n, sides) on their face places (n,) are, −1 … 1 from edge to edge, across before down."""
+        """Compute the coordinates (n, 1 or 2) of places (n,) on their face, −1 … 1; across before down."""
         steps = np.unravel_index(place, self.sides)[::-1]
         return np.column_stack([2 * (step + 0.5) / side - 1 for step, side in zip(steps, self.sides, strict=True)])
 
@@ -201,7 +201,7 @@ class Stretches:
 
     @classmethod
     def of(cls, cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Stretches:
-        """Average what is `left` of all points of a cloud over stretches; those far off count for less."""
+        """Average the residuals `left` of all points of a cloud over stretches of stripes; outliers count less."""
         expected = cloud.sigma * np.maximum(
             np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING
         )
@@ -218,9 +218,9 @@ class Stretches:
 
 
 def judge_form(cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Judgement | None:
-    """Judge what is `left` of all points of a cloud, on the faces `part` (N,) of a surface; cells are its `places`.
+    """Test whether the residuals `left` of a cloud's points show a form or too much scatter; None if there are too few.
 
-    Of stretches of stripes; groups are the sweeps. None where there are no more of them than what was fitted.
+    The residuals are means over stretches of stripes; their groups are the sweeps.
     """
     stretches = Stretches.of(cloud, left, part, places, errors)
     sources = stretches.sources
@@ -248,7 +248,7 @@ def notes_on_form(
     part: Parts | None = None,
     position: Array | None = None,
 ) -> tuple[Message, ...]:
-    """Note what is wrong with a surface, and in which direction: at most one note a face.
+    """Make the notes on the form error of a fitted surface and its direction, at most one for each face.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ def _note_on_angle(patterns: Sequence[Pattern | None], names: Sequence[Message])
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
-    """Note where points off a nominal surface by `deviation` (N,) in mm exceed their uncertainty, however laid on.
+    """Make the note on a significant pattern in deviations (N,) in mm from a nominal surface; () if there is none.
 
     `normals` (N, 3) are of the nominal surface. At most one note, none on scatter: a map has no margin, and points at
     edges, which no fit has left out, scatter more than they can state. What they scatter makes a pattern less sure.
@@ -353,14 +353,14 @@ class Pattern:
     at: Array
 
     def beside_plane(self) -> Array:
-        """Compute the part (n,) in mm of the heights that no slant of the whole face explains."""
+        """Compute the part (n,) in mm of the pattern's heights that a tilted plane does not explain."""
         slant, root = np.column_stack([np.ones(len(self.at)), self.at]), np.sqrt(self.count)
         solved = np.linalg.lstsq(slant * root[:, None], self.height * root, rcond=None)[0]
         return np.asarray(self.height - slant @ solved)
 
 
 def pattern_on(found: Judgement, places: Places, number: int, face: Cloud) -> Pattern | None:
-    """Compute the pattern over one face; None unless it is sure and larger than STANDS_OUT_PX pixels."""
+    """Compute the pattern of mean residuals over face `number`; None unless it is significant and large."""
     count = found.count[places.of_face(number)]
     seen = np.flatnonzero(count)
     if found.p >= SURELY or len(seen) < _LEAST_PATCHES[len(places.sides)]:
@@ -378,7 +378,7 @@ def _pixel_mm(cloud: Cloud) -> float:
 
 
 def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
-    """Note that points scatter more than stated; () unless they surely do."""
+    """Make the note that points scatter more than their stated σ; () unless they certainly do."""
     asked = ((found.whole, found.whole_freedom), (found.alone, found.freedom))
     if any(times <= TIMES or _by_chance(times, freedom) >= SURELY for times, freedom in asked):
         return ()

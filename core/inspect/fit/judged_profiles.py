@@ -51,7 +51,7 @@ class FacesInPicture:
 
 
 def notes_on_profiles(pictures: Sequence[FacesInPicture], names: Sequence[Message]) -> tuple[Message, ...]:
-    """Note what is wrong with the faces called `names`, at most one note each, or with the scatter of their points."""
+    """Make the notes on form errors of the two faces called `names`, or else on too much scatter of their points."""
     few = np.unique(np.linspace(0, len(pictures) - 1, min(len(pictures), MOST_PICTURES)).astype(int))
     pictures = [pictures[index] for index in few]
     places = [Places.in_section(one.position, one.part) for one in pictures]

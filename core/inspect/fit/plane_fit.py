@@ -87,7 +87,7 @@ class ParallelPlaneFit:
         return self.lower_distance - self.upper_distance
 
     def shape(self, points: Array, face: NDArray[np.int64]) -> ParallelPlanes:
-        """Make the planes' shape amid `points` (N, 3) of the upper face, 0, and the lower, 1, as `face` (N,) says."""
+        """Make `ParallelPlanes` amid `points` (N, 3) in mm of the upper and lower face, 0 and 1 in `face` (N,)."""
         centres = []
         for number, distance in enumerate((self.upper_distance, self.lower_distance)):
             middle = points[face == number].mean(axis=0)
@@ -289,7 +289,7 @@ class FittedFaces:
 
 
 def fit_faces(upper: Cloud, lower: Cloud, planes: ParallelPlaneFit, errors: PointErrors) -> FittedFaces:
-    """Fit the two faces again, from the robust fit `planes` of their points.
+    """Fit two parallel faces by generalised least squares, starting from the robust fit `planes` of the same points.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def find_planes(
     seed: int = 0,
     progress: Progress = silent,
 ) -> list[FoundPlane]:
-    """Find at most `most` plane faces, those that explain most area first.
+    """Find at most `most` plane faces of a cloud by RANSAC, the one of the largest area first.
 
     Parameters
     ----------
@@ -105,17 +105,17 @@ def above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -
 
 
 def points_on(cloud: Cloud, plane: FoundPlane, tolerance_mm: float) -> NDArray[np.int64]:
-    """Select all points of the cloud within `tolerance_mm` of a plane that do not face elsewhere; return indices."""
+    """Select the points of a cloud within `tolerance_mm` of a plane whose normals agree with it; return indices."""
     return np.flatnonzero(_on_plane(cloud, plane.normal, plane.distance, tolerance_mm))
 
 
 def search_tolerance(cloud: Cloud) -> float:
-    """Compute the distance in mm within which a point belongs to a plane: five times the median σ, at least 0.25."""
+    """Compute the largest distance in mm of a point from a plane it belongs to: five median σ, at least 0.25 mm."""
     return max(0.25, 5 * float(np.median(cloud.sigma))) if len(cloud) else 0.25
 
 
 def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -> FoundPlane | None:
-    """Find the plane that explains most area, with its region less `margin_mm`; None when nothing is plane.
+    """Find the plane of the largest area in a cloud, its region less `margin_mm`; None if there is no plane.
 
     Parameters as for `find_planes`; `tolerance` in mm.
     """

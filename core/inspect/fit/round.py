@@ -61,7 +61,7 @@ def find_sphere(
     seed: int = 0,
     progress: Progress = silent,
 ) -> NDArray[np.int64]:
-    """Find the sphere that explains most of a cloud; return the indices (n,) of the points on it.
+    """Find the sphere that fits the most of a cloud by RANSAC; return the indices (n,) of the points on it.
 
     Two points and their normals make a hypothesis: the centre is where the two normals meet.
 
@@ -110,12 +110,12 @@ def find_sphere(
 
 
 def too_few_for_a_sphere(count: int) -> Message:
-    """Make the message that `count` points are too few for a sphere."""
+    """Make the message that `count` points are too few to fit a sphere."""
     return Message("surface.too_few_for_sphere", "{n} points are too few for a sphere", n=count)
 
 
 def sphere_through(points: Array) -> Sphere:
-    """Fit the sphere of least algebraic distance to points (N, 3) in mm: |X|² = 2 c·X + (R² − |c|²) is linear."""
+    """Fit a sphere to points (N, 3) in mm by linear (algebraic) least squares."""
     middle = points.mean(axis=0)
     centred = points - middle
     squares = (centred**2).sum(axis=1)
@@ -161,7 +161,7 @@ def find_cylinder(
     on_table: bool = True,
     progress: Progress = silent,
 ) -> tuple[NDArray[np.int64], Cylinder]:
-    """Find the cylinder that explains most of a cloud: ascending indices (n,) of its points, and about where it lies.
+    """Find the cylinder that fits the most of a cloud; return its points' indices (n,) and an approximate cylinder.
 
     Two points and their normals make a hypothesis: the axis is square to both normals, and seen along it they meet in
     its centre.
@@ -244,7 +244,7 @@ def _on_cylinder(points: Array, normals: Array, cylinder: Cylinder, tolerance: f
 
 
 def with_uneven_light(fit: SurfaceFit[Round], cloud: Cloud, errors: PointErrors) -> SurfaceFit[Round]:
-    """Add the effect of uneven light to a fit to points of `cloud`; none where the stripes' σ is not known."""
+    """Add the uncertainty by uneven light to a fitted sphere or cylinder; unchanged if the stripes' σ is not known."""
     if not errors.stripe_px > 0:
         return fit
     used = cloud.select(fit.indices)

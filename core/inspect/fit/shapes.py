@@ -23,23 +23,23 @@ class Shape(Protocol):
     """Surface of p parameters; `part` (N,) tells points of several faces apart."""
 
     def misfit(self, points: Array, part: Parts) -> Array:
-        """Compute the signed distance (N,) in mm of `points` (N, 3) from the surface, outwards positive."""
+        """Compute the signed distances (N,) in mm of `points` (N, 3) from the surface, positive outside."""
         ...
 
     def outward(self, points: Array, part: Parts) -> Array:
-        """Compute the unit normals (N, 3), by which the distance follows the points."""
+        """Compute the outward unit normals (N, 3) of the surface at `points` (N, 3) in mm."""
         ...
 
     def design(self, points: Array, part: Parts) -> Array:
-        """Compute how far (N, p) the surface moves outwards at each point with each parameter."""
+        """Compute the derivatives (N, p) of the surface's outward motion at `points` (N, 3) by its p parameters."""
         ...
 
     def moved(self, step: Array) -> Self:
-        """Return the surface after a `step` (p,) of its parameters."""
+        """Return the surface with its parameters changed by `step` (p,)."""
         ...
 
     def values(self) -> dict[str, Any]:
-        """Return the surface's place in the camera frame, in mm, by the names of result files."""
+        """Return the surface's parameters in the camera frame, lengths in mm, under the names used in result files."""
         ...
 
 
@@ -47,7 +47,7 @@ S = TypeVar("S", bound=Shape)
 
 
 def nearest_to(shape: S, points: Array, part: Parts, *, least: float | None = None) -> S:
-    """Fit the surface with the least squares of its plain distances from `points` (N, 3), from a start near it.
+    """Fit a shape to `points` (N, 3) in mm by unweighted least squares, starting from `shape`.
 
     What the points fix by less than `least` of what they fix best stays as it is; None: by rounding errors only.
     """
@@ -80,12 +80,12 @@ class ParallelPlanes:
 
     @classmethod
     def through(cls, normal: Array, centres: Array) -> ParallelPlanes:
-        """Make faces square to `normal` (3,) through `centres` (L, 3) that may tilt both ways."""
+        """Make parallel planes with the normal `normal` (3,) through `centres` (L, 3) in mm; both tilts are free."""
         return cls(normal, np.atleast_2d(centres), square_to(normal))
 
     @property
     def normal_gradient(self) -> Array:
-        """Derivatives (3, p) of the normal by the parameters."""
+        """Derivatives (3, p) of the common normal by the p parameters."""
         return np.hstack([np.zeros((3, len(self.centres))), self.axes])
 
     def misfit(self, points: Array, part: Parts) -> Array:
@@ -110,7 +110,7 @@ class ParallelPlanes:
         return {"normal": self.outward_normal, "centres": self.centres}
 
     def height(self, upper: int, lower: int) -> tuple[float, Array]:
-        """Compute the distance in mm between two of the faces along the common normal, and its gradient (p,)."""
+        """Compute the distance in mm between the faces numbered `upper` and `lower`, and its gradient (p,)."""
         between = self.centres[upper] - self.centres[lower]
         gradient = np.concatenate([np.zeros(len(self.centres)), between @ self.axes])
         gradient[upper], gradient[lower] = 1.0, -1.0
@@ -156,17 +156,17 @@ class Cylinder:
 
     @classmethod
     def along(cls, centre: Array, direction: Array, radius: float, *, turns: bool = True) -> Cylinder:
-        """Make a cylinder with two axes square to its direction."""
+        """Make a cylinder from its centre (3,), direction (3,) and radius in mm; `turns`: its direction is free."""
         return cls(centre, direction, square_to(direction), radius, turns)
 
     @property
     def centre_gradient(self) -> Array:
-        """Derivatives (3, p) of the point on the axis by the parameters."""
+        """Derivatives (3, p) of the axis' point `centre` by the p parameters."""
         return np.hstack([self.axes, np.zeros((3, 3 if self.turns else 1))])
 
     @property
     def direction_gradient(self) -> Array:
-        """Derivatives (3, p) of the direction by the parameters."""
+        """Derivatives (3, p) of the axis' direction by the p parameters."""
         return np.hstack([np.zeros((3, 2)), self.axes, np.zeros((3, 1))])
 
     def misfit(self, points: Array, part: Parts) -> Array:

@@ -49,7 +49,7 @@ _FREE = 1e-12
 
 
 def flat_points(shape: Shape, cloud: Cloud, errors: PointErrors) -> Message | None:
-    """Check whether a flat shape explains the points of a round one; return the message that says so, else None.
+    """Check whether a plane or line explains the points of a fitted sphere or cylinder; return a message, else None.
 
     Parameters
     ----------

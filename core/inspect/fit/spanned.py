@@ -31,7 +31,7 @@ _SINGULAR = 1e-12
 
 
 def spanned(shape: Shape, points: Array, sigma: Array, part: Parts) -> bool:
-    """Whether points fix all the parameters of a shape that move them.
+    """Whether `points` (N, 3) in mm determine all parameters of a shape in spite of their noise `sigma` (N,).
 
     Parameters
     ----------
@@ -57,5 +57,5 @@ def spanned(shape: Shape, points: Array, sigma: Array, part: Parts) -> bool:
 
 
 def faces_not_spanned(names: Sequence[Message]) -> Message:
-    """Make the note that faces called `names` prove nothing, since their points do not span them."""
+    """Make the note that results on the faces called `names` prove nothing, as their points fix no surface."""
     return note_of("surface.faces_not_spanned", name=list(names))

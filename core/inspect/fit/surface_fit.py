@@ -87,7 +87,7 @@ class SurfaceFit(Generic[S]):
     faces_spanned: NDArray[np.bool_]
 
     def budget(self, gradient: Array) -> tuple[Contribution, ...]:
-        """Compute the budget of a quantity that follows the parameters with `gradient` (p,)."""
+        """Compute the uncertainty budget of a quantity with derivatives `gradient` (p,) by the fitted parameters."""
         return budget_of([(gradient, self.effects)])
 
     @property
@@ -111,7 +111,7 @@ def fit_surface(
     tukey: float = TUKEY,
     form_mm: float | None = None,
 ) -> SurfaceFit[S]:
-    """Fit a shape to points of a cloud.
+    """Fit a shape to the points `indices` of a cloud, robustly at first, then with the covariance of their errors.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def fit_surface(
 
 
 def too_few(count: int) -> InputError:
-    """Make the error that a surface cannot be fitted to so few points."""
+    """Make the error that `count` points are too few to fit a surface."""
     return InputError(Message("surface.too_few_points", "{n} points are too few for it", n=count), todo=MORE_SWEEPS)
 
 
@@ -227,7 +227,7 @@ class Range(NamedTuple):
 
 
 def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
-    """Compute the range of a cloud's points in one direction by their heights (N,) in mm, or by means over cells."""
+    """Compute the 95 % range in mm of points' heights (N,), or of their means over cells if `cell_mm` is above 0."""
     cell = _cells(cloud.points, cell_mm) if cell_mm > 0 else np.arange(len(heights), dtype=np.int64)
     share = 1.0 / np.bincount(cell)[cell]
     values = np.asarray(np.bincount(cell, share * heights), dtype=np.float64)
@@ -243,7 +243,7 @@ def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
 
 
 def u_of_quantiles(values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64]) -> float:
-    """Compute the standard uncertainty of Σ sign · quantile of `values` (N,) by drawing groups (N,) with repeats."""
+    """Compute the standard uncertainty of a signed sum of quantiles of `values` (N,), by bootstrap over groups."""
     order = np.argsort(values, kind="stable")
     order = order[:: max(1, len(order) // MOST_DRAWN)]
     ranked, of = values[order], group[order]

@@ -46,7 +46,7 @@ BETTER = 2.0
 
 
 def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
-    """Compute the pose of part coordinates by 3-2-1; see `core.inspect.plan.inspection_plan.PartFrame`.
+    """Compute the pose of part coordinates in the camera frame from three features by the 3-2-1 rule.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def three_two_one(primary: Element, secondary: Element, tertiary: Element | None
 
 
 def unfixed(secondary: Element, tertiary: Element | None) -> int | None:
-    """Return along which part coordinate, 0 or 1, no feature fixes the origin of `three_two_one`; None: all fixed."""
+    """Return the part coordinate, 0 or 1, whose origin no feature fixes in `three_two_one`; None if all are fixed."""
     if tertiary is not None:
         return None
     return 1 if secondary.kind == "plane" else 0
@@ -104,7 +104,7 @@ class Aligned:
 def best_fit(
     points: Array, up: Array, query: ProximityQuery, progress: Progress = silent, near: Pose | None = None
 ) -> Aligned:
-    """Lay a nominal surface on measured points.
+    """Align a nominal surface with measured points (N, 3) in mm by a best fit; return its pose and the median distance.
 
     Parameters
     ----------

@@ -67,6 +67,6 @@ class Master:
 
     @property
     def remaining_doubts(self) -> Doubts:
-        """Doubts that do not cancel in a comparison: with one calibration that of the plane target's size does."""
+        """Doubts on the master's measurement (reasons why it proves nothing) that a comparison does not cancel."""
         cancelling = SIZE_UNCONFIRMED.fact if self.same_calibration else ""
         return tuple(doubt for doubt in self.doubts if doubt.fact != cancelling)

@@ -52,14 +52,14 @@ class ControlFrame:
 
 
 def datum_letters(plan: InspectionPlan) -> dict[str, str]:
-    """Assign letters to the names of features that are datums: those of the part coordinates first, in their order."""
+    """Assign a letter to each feature that is a datum, by its name: first those of the part coordinates, in order."""
     names = list(plan.frame.names) if plan.frame is not None else []
     names += [spec.of[1] for spec in plan.features if _has_own_datum(spec)]
     return dict(zip(dict.fromkeys(names), LETTERS, strict=False))
 
 
 def control_frames(plan: InspectionPlan) -> Mapping[str, ControlFrame]:
-    """Make the control frames of characteristics that are a form or a lie after ISO 1101 with a tolerance, by name."""
+    """Make the feature control frame (ISO 1101) of each toleranced form or lie, by the characteristic's name."""
     letters, frames = datum_letters(plan), dict[str, ControlFrame]()
     for spec in plan.features:
         for name, result in results_of(spec).items():
@@ -74,7 +74,7 @@ def control_frames(plan: InspectionPlan) -> Mapping[str, ControlFrame]:
 
 
 def datums_of(spec: FeatureSpec, plan: InspectionPlan) -> tuple[str, ...]:
-    """Return the names of the features that are the datums of this one, in their order."""
+    """Return the names of the features that are the datums of the feature `spec`, in order."""
     if spec.position is not None or (spec.deviation is not None and spec.deviation.align == "frame"):
         return () if plan.frame is None else plan.frame.names
     return spec.of[1:] if _has_own_datum(spec) else ()

@@ -153,16 +153,16 @@ class FeatureKind:
 
     @property
     def measure(self) -> Callable[..., Any]:
-        """Function that measures a feature of this kind."""
+        """Function that measures a feature of this kind; imported on first use."""
         module, _, function = self.fit.partition(":")
         found: Callable[..., Any] = getattr(importlib.import_module(module), function)
         return found
 
     @property
     def expands(self) -> bool:
-        """Whether a result of this kind grows with the part's temperature."""
+        """Whether any characteristic of this kind of feature grows with the part's temperature."""
         return any(result.expands for result in self.results)
 
     def result(self, name: str) -> ResultKind:
-        """Find the result called `name`; KeyError if the kind gives none."""
+        """Find the characteristic called `name` among those of this kind of feature; KeyError if there is none."""
         return {result.name: result for result in self.results}[name]

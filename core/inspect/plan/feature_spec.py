@@ -203,18 +203,18 @@ class FeatureSpec:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Names of all features that this one rests on."""
+        """Names of all other features that have to be measured before this feature."""
         return (*self.of, *(region.feature for region in self.regions if isinstance(region, PointsOf)))
 
     @property
     def in_part_coordinates(self) -> bool:
-        """Whether the feature can only be measured once the part's frame is known."""
+        """Whether the feature is defined in part coordinates, so that these must be known before it is measured."""
         placed = self.section is not None and self.section.line_px is None
         framed = self.deviation is not None and self.deviation.align == "frame"
         return placed or framed or self.position is not None or any(map(_is_placed, self.regions))
 
     def limits_of(self, result: str) -> Limits | None:
-        """Return the limits of a result, as "diameter" or "height 2"; None: there are none."""
+        """Return the limits of the result called "diameter", "height 2" and so on; None if it has none."""
         asked = dict(self.limits)
         name, _, number = result.rpartition(" ")
         if not self.nominal_heights or name not in asked or not number.isdigit():

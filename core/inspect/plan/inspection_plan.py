@@ -29,7 +29,7 @@ class PartFrame:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the features that part coordinates rest on."""
+        """Names of the two or three features that define the part coordinates."""
         return tuple(name for name in (self.primary, self.secondary, self.tertiary) if name)
 
 
@@ -63,11 +63,11 @@ class InspectionPlan:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the features."""
+        """Names of the features of the plan, in order."""
         return tuple(feature.name for feature in self.features)
 
     def ordered(self) -> tuple[FeatureSpec, ...]:
-        """Order the features so that each comes after all it rests on.
+        """Order the features so that each comes after all features it depends on.
 
         Raises
         ------
@@ -97,7 +97,7 @@ class InspectionPlan:
         return tuple(done)
 
     def asks_the_same(self, name: str, other: InspectionPlan) -> bool:
-        """Whether `other` asks the same of the feature `name`, of all that it rests on, and of the part as a whole."""
+        """Whether the plan `other` defines the feature `name`, those it depends on and the part as this plan does."""
         whole = [replace(plan, features=()) for plan in (self, other)]
         return whole[0] == whole[1] and self._asked(name) == other._asked(name) != {}
 

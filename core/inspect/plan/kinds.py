@@ -241,23 +241,23 @@ KINDS: tuple[FeatureKind, ...] = (
 
 
 def kind_of(spec: FeatureSpec) -> FeatureKind:
-    """Find the kind of a feature; KeyError if there is none of its kind's name."""
+    """Find the feature kind of a plan's feature by its `kind`; KeyError if there is none of that name."""
     return kind_named(spec.kind)
 
 
 def kind_named(name: str) -> FeatureKind:
-    """Find the kind called `name`; KeyError if there is none."""
+    """Find the feature kind called `name`, built in or from another package; KeyError if there is none."""
     own = {kind.name: kind for kind in KINDS}
     return own[name] if name in own else brought_kinds()[name][0]
 
 
 def every_kind() -> tuple[FeatureKind, ...]:
-    """Return the program's own kinds, and those that other packages bring."""
+    """Return all feature kinds: the built-in ones, then those from other packages."""
     return (*KINDS, *(kind for kind, _ in brought_kinds().values()))
 
 
 def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
-    """Find kinds that other packages bring, with their origin; none that takes the name of one of our own."""
+    """Find the feature kinds from other packages with their origin, by name, except names of built-in kinds."""
     from core.inspect.plan.plugins import plugins  # looking for packages takes time that most never need
 
     own = {kind.name for kind in KINDS}
@@ -265,7 +265,7 @@ def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
 
 
 def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
-    """Return the kinds of a feature's results, by the names of their limits: of a section those of its cuts."""
+    """Return the kind of each result of a feature, by the result's name; a section's results are its cuts."""
     kind = kind_of(spec)
     if kind.settings == "section" and spec.section is not None:
         return {cut.name: kind.result(cut.kind) for cut in spec.section.cuts}
@@ -273,10 +273,10 @@ def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
 
 
 def expanding() -> frozenset[str]:
-    """Return the names of the characteristics that grow with the part's temperature."""
+    """Return the names of the results of all feature kinds that grow with the part's temperature."""
     return frozenset(result.name for kind in every_kind() for result in kind.results if result.expands)
 
 
 def expands(characteristic: Characteristic) -> bool:
-    """Whether a characteristic is a length that grows with the part: no angle, and no deviation of form."""
+    """Whether a characteristic is a length that grows with the part's temperature, and no angle or form deviation."""
     return characteristic.kind in expanding() and characteristic.quantity == "length"

@@ -44,7 +44,7 @@ class Plugins:
 
 @cache
 def plugins() -> Plugins:
-    """Load the kinds and checks of all installed packages, once."""
+    """Load the feature kinds and checks of all installed packages; further calls return the first result."""
     kinds, checks, problems = dict[str, tuple[FeatureKind, Origin]](), list[Check](), list[Message]()
     for group in (KINDS_GROUP, CHECKS_GROUP):
         for one in by_entry_points(group):

@@ -38,7 +38,7 @@ ALIKE = 0.2
 
 
 def at_reference(length: Characteristic, temperature: Temperature, k: float) -> Characteristic:
-    """Convert a length to 20 °C, with what temperatures and coefficients add to its uncertainty, and a note on it.
+    """Convert a measured length to 20 °C, add the rows for temperatures and expansion to its budget, and a note.
 
     Form, angles and everything else that does not grow with the part is returned as it is. `k` is the coverage factor
     where u is known.
@@ -67,7 +67,7 @@ def at_reference(length: Characteristic, temperature: Temperature, k: float) -> 
 def correction_to_reference(
     length_mm: float, temperature: Temperature
 ) -> tuple[float, tuple[Contribution, ...], tuple[Message, ...]]:
-    """Compute the correction in mm of a length to 20 °C, its rows of the uncertainty budget, and notes on it.
+    """Compute the correction in mm of a length to 20 °C, the rows it adds to the uncertainty budget, and notes on it.
 
     Nothing is said of a temperature that is assumed: nothing is added then.
     """
@@ -85,10 +85,7 @@ def _of_scale_alone(change_mm: float, celsius: float) -> Message:
 
 
 def temperature_of(part: Part) -> Temperature | None:
-    """Make the temperature and expansion of a part and of the scale as stated, else as assumed.
-
-    None where both are at 20 °C for sure.
-    """
+    """Make the temperatures and expansions of part and scale, assumed if not stated; None if surely at 20 °C."""
     alpha, u_alpha = part.expansion
     celsius, u_celsius, assumed = part.warmth
     known = Temperature(
@@ -100,7 +97,7 @@ def temperature_of(part: Part) -> Temperature | None:
 
 
 def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperature:
-    """Add the scale's temperature to a part's where that has none: as stated, else as assumed."""
+    """Fill in the temperature and expansion of the scale from those of the plane target, where they are missing."""
     if temperature.scale_alpha or temperature.u_scale_alpha:
         return temperature
     alpha, u_alpha = target.expansion
@@ -119,7 +116,7 @@ def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperatu
 
 
 def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
-    """Compute the contributions of temperatures and coefficients to u of a length at 20 °C; no zero rows."""
+    """Compute the budget rows of temperatures and expansion coefficients for a length at 20 °C; no zero rows."""
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
     of_celsius = Cause.PART_TEMPERATURE_ASSUMED if temperature.celsius_assumed else Cause.PART_TEMPERATURE
     of_alpha = Cause.PART_EXPANSION_ASSUMED if temperature.alpha_assumed else Cause.PART_EXPANSION
@@ -139,7 +136,7 @@ def temperature_contributions(length_mm: float, temperature: Temperature) -> tup
 
 
 def compared(length: Characteristic, master: Master, k: float) -> Characteristic:
-    """Compare a length with a master: certified + (measured − master measured).
+    """Correct a measured length by a master of the same size: certified + (measured − master measured).
 
     What camera and fan get wrong is the same for both if one calibration measured both, so of each such cause only the
     difference stays; everything else of both measurements and the certificate adds up. A length that differs from the

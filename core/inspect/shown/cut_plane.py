@@ -33,7 +33,7 @@ ACROSS, HEIGHT = (1, 0, 0), (2, 2, 1)
 
 
 def turned_for(frame: ViewFrame, axis: int, turned_deg: float, tilted_deg: float) -> ViewFrame:
-    """Turn `frame` for a plane square to `axis`: about its heights, then tilt it about the direction it runs in.
+    """Rotate the frame of a cutting plane square to `axis` about the plane's height axis, then about its run.
 
     A turned plane square to x or y stays upright; a tilted one does not.
     """
@@ -61,21 +61,21 @@ class CutPlane:
 
     @property
     def upwards(self) -> int:
-        """Sign of heights: 1 where they are the frame's z; −1 in the camera's, whose z points away from the viewer."""
+        """Sign of heights in the profile: 1, or −1 in the camera frame, whose z points away from the viewer."""
         return -1 if self.frame.kind is FrameKind.CAMERA else 1
 
     @property
     def across(self) -> int:
-        """Number of the axis along which a profile in the plane runs."""
+        """Index (0, 1 or 2) of the frame's axis along which positions in the profile are counted."""
         return ACROSS[self.axis]
 
     @property
     def height(self) -> int:
-        """Number of the axis along which heights of that profile count: z, or y in a plane square to z."""
+        """Index (0, 1 or 2) of the frame's axis along which heights in the profile are counted."""
         return HEIGHT[self.axis]
 
     def corners(self, coordinates: Array) -> Array:
-        """Compute the corners (4, 3) in mm, camera frame, of a patch as large as points (N, 3) in its frame reach.
+        """Compute the corners (4, 3) in mm of the camera frame of a patch of the plane that spans `coordinates` (N, 3).
 
         Its lower edge comes first.
         """
@@ -88,7 +88,7 @@ class CutPlane:
         return self.frame.pose_camera_frame.apply(places)
 
     def profile(self, coordinates: Array) -> ShownProfile:
-        """Cut points (N, 3), given in mm in the plane's frame: positions are along `across`, heights along `height`.
+        """Cut points (N, 3), given in mm in the plane's frame, and return the profile of those near the plane.
 
         An outline, as a plane square to z cuts it, has no mean line.
         """
@@ -99,7 +99,7 @@ class CutPlane:
         return ShownProfile.of(position, height, means, USUAL.step_mm, MOST_DRAWN)
 
     def section(self, pose_camera_part: Pose | None) -> Section:
-        """Make the section that measures an upright plane; without part coordinates it is placed in the camera's."""
+        """Make the plan's section for this plane; without part coordinates (None), in the camera frame."""
         pose = Pose.identity() if pose_camera_part is None else pose_camera_part
         place = np.zeros(3)
         place[self.axis] = self.at_mm

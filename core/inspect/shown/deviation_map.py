@@ -49,23 +49,23 @@ class DeviationMap:
 
     @property
     def classes(self) -> NDArray[np.int8]:
-        """Classes (N,), −4 … 4, of the deviations; see `mark`."""
+        """Classes (N,), −4 … 4, of the deviations by quarters of the tolerance; ±4 is beyond the tolerance."""
         return classes_of(self.deviation, self.tolerance_mm)
 
     @property
     def outside(self) -> float:
-        """Share of the places beyond the tolerance."""
+        """Share (0 … 1) of the places whose deviation is beyond the tolerance."""
         return float(np.mean(np.abs(self.deviation) > self.tolerance_mm)) if len(self.deviation) else 0.0
 
     def histogram(self, bins: int = 40) -> tuple[Array, NDArray[np.int64]]:
-        """Count the places between edges (bins + 1,) in mm, the outermost with all beyond; return edges and counts."""
+        """Count the deviations between edges (bins + 1,) in mm, outliers in the end bins; return edges and counts."""
         widest = max(1.5 * self.tolerance_mm, float(np.quantile(np.abs(self.deviation), 0.99)))
         edges = np.linspace(-widest, widest, bins + 1)
         return edges, np.histogram(np.clip(self.deviation, -widest, widest), edges)[0].astype(np.int64)
 
 
 def classes_of(deviation: Array, tolerance_mm: float) -> NDArray[np.int8]:
-    """Compute the classes −4 … 4 of deviations (N,) in mm by quarters of the tolerance; ±4 is beyond it.
+    """Compute the classes −4 … 4 of deviations (N,) in mm by quarters of the tolerance; ±4 is beyond the tolerance.
 
     Examples
     --------
@@ -77,13 +77,13 @@ def classes_of(deviation: Array, tolerance_mm: float) -> NDArray[np.int8]:
 
 
 def mark(number: int) -> str:
-    """Return the sign drawn for a class: + ++ +++ outwards, − −− −−− inwards, with ! beyond the tolerance."""
+    """Return the mark of a deviation class −4 … 4, as "++", "−−−" or "+!", where ! means beyond the tolerance."""
     outwards = MARKS[abs(int(number))]
     return outwards if number >= 0 else outwards.replace("+", "−")
 
 
 def bounds(number: int, tolerance_mm: float) -> tuple[float, float]:
-    """Return the lower and the upper end of a class, in mm; −inf or inf beyond the tolerance.
+    """Return the lower and upper end in mm of the deviation class `number`, −4 … 4; class ±4 ends at ±inf.
 
     Examples
     --------

@@ -36,7 +36,7 @@ OPENED_SHARE = 0.85
 
 
 def face_outline(cloud: Cloud, chosen: NDArray[np.int64], face: str) -> Array:
-    """Compute the outline in pixels of the plane face that is meant by the `chosen` points.
+    """Compute the outline (n, 2) in pixels of the plane face that a selection of points on the screen means.
 
     What is chosen on the screen holds points behind the face as well, often more of them. Meant is the face that was
     chosen as a whole rather than a part of one that goes on outside; of several such ones the nearest to the camera for
@@ -88,7 +88,7 @@ def _meant(cloud: Cloud, part: Cloud, planes: list[FoundPlane], *, nearest: bool
 
 
 def outline_px(uv: ArrayLike) -> Array:
-    """Compute the outline of places in the picture: as tight as gaps between stripes allow, simplified to few corners.
+    """Compute the outline (n, 2), a polygon of few corners, of places `uv` (N, 2) in the picture, in pixels.
 
     Parameters
     ----------

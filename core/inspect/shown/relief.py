@@ -20,7 +20,7 @@ GROUND = 18
 
 
 def relief(image_size: tuple[int, int], uv: Array, depth: Array, normals: Array) -> Relief:
-    """Draw the points of a cloud into the cells they were seen in, the gaps between stripes filled.
+    """Draw a grey picture of the measured points in the camera's view: shaded, near is bright, gaps filled.
 
     Parameters
     ----------

@@ -46,20 +46,20 @@ class SeenFrom:
             set_field(self, "hidden", frozen_array(self.hidden, (2, 3), "hidden"))
 
     def hides(self, points: Array) -> NDArray[np.bool_]:
-        """Test which of the points (N, 3) in mm were hidden."""
+        """Compute flags (N,) of the points (N, 3) in mm that a cutting plane hid in the view."""
         if self.hidden is None:
             return np.zeros(len(points), dtype=bool)
         place, towards = self.hidden
         return np.asarray((points - place) @ towards > 0)
 
     def in_sight(self, points: Array) -> NDArray[np.bool_]:
-        """Test which of the points (N, 3) in mm were within the view and not hidden."""
+        """Compute flags (N,) of the points (N, 3) in mm that were within the view and not hidden."""
         x, y = self.axes[:2] @ (points - self.focal).T
         within = (np.abs(x) <= self.half_height_mm * self.aspect) & (np.abs(y) <= self.half_height_mm)
         return np.asarray(within & ~self.hides(points))
 
     @property
     def words(self) -> str:
-        """Numbers of the view as text, alike for two views that show the same."""
+        """Numbers of the view as one line of text, equal for two views that show the same."""
         parts = [self.axes, self.focal, self.half_height_mm, self.aspect, *([] if self.hidden is None else self.hidden)]
         return " ".join(f"{number:.6g}" for part in parts for number in np.ravel(part) + 0.0)

@@ -38,14 +38,14 @@ class ShownProfile:
 
     @classmethod
     def of(cls, position: Array, height: Array, means: tuple[Array, Array], step_mm: float, most: int) -> ShownProfile:
-        """Make the profile of points (N,), `most` of which are drawn, and of their means over steps of `step_mm`."""
+        """Make a profile to draw from points (N,) in mm, thinned out to `most`, and `means` over `step_mm`."""
         order = np.argsort(position, kind="stable")[:: max(1, -(-len(position) // most))]
         far = np.diff(means[0], prepend=means[0][:1]) > UNSEEN_STEPS * step_mm
         return cls(position[order], height[order], *means, np.cumsum(far))
 
     @property
     def mean_line(self) -> tuple[Array, Array]:
-        """Positions and heights in mm of the mean, with NaN between its pieces, where the surface is not known."""
+        """Positions and heights in mm of the profile's mean line, with NaN at its gaps."""
         ends = np.flatnonzero(np.diff(self.mean_piece)) + 1
         return np.insert(self.mean_position, ends, np.nan), np.insert(self.mean_height, ends, np.nan)
 

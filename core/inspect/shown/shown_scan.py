@@ -70,7 +70,7 @@ class ShownMesh:
     triangle_sigma: Values
 
     def up_to(self, sigma_mm: float) -> int:
-        """Count the first triangles that have no corner with a σ in mm larger than this."""
+        """Count the leading triangles, sorted by σ, whose corners all have a σ of at most `sigma_mm`."""
         return int(np.searchsorted(self.triangle_sigma, np.float32(sigma_mm), side="right"))
 
 
@@ -161,7 +161,7 @@ class InspectionView:
         return len(self.points)
 
     def up_to(self, sigma_mm: float) -> int:
-        """Count the first points that have no σ in mm larger than this."""
+        """Count the leading points, sorted by σ, that have a σ of at most `sigma_mm`."""
         return int(np.searchsorted(self.sigma, np.float32(sigma_mm), side="right"))
 
     def used_up_to(self, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -172,6 +172,6 @@ class InspectionView:
         return upper[: np.searchsorted(upper, count)], lower[: np.searchsorted(lower, count)]
 
     def frame_name(self, point: int) -> str:
-        """Return the name of the frame a point was measured in; "" for one the fan measured itself."""
+        """Return the name of the frame that point number `point` was measured in; "" for a point of the fan."""
         number = float(self.frame[point])
         return self.frames[int(number) - 1] if 1 <= number <= len(self.frames) else ""

@@ -45,7 +45,7 @@ class Ground:
 
     @classmethod
     def of(cls, plane: LightPlane | None, points: Array) -> Ground:
-        """Make the frame with up out of `plane`, towards the camera; without one, up from the farthest points to it."""
+        """Make the ground frame: up is out of `plane`, or, if None, opposite to the camera's viewing direction."""
         away = np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
         along = np.array([1.0, 0.0, 0.0]) - away[0] * away
         along /= np.linalg.norm(along)
@@ -55,7 +55,7 @@ class Ground:
         return cls(np.array([along, np.cross(up, along), up]), away * distance)
 
     def local(self, points: Array) -> Array:
-        """Transform `points` (N, 3) in mm of the camera frame into along, across and height in this one."""
+        """Transform `points` (N, 3) in mm from the camera frame into this frame: along, across, height."""
         local: Array = (points - self.origin) @ self.axes.T
         return local
 
@@ -69,24 +69,24 @@ class ViewFrame:
 
     @property
     def axes(self) -> Array:
-        """Axes x, y and z as rows (3, 3) of unit vectors in the camera frame."""
+        """Unit vectors of the frame's x, y and z axis as rows (3, 3), in the camera frame."""
         return self.pose_camera_frame.rotation.T
 
     def coordinates(self, points: ArrayLike) -> Array:
-        """Transform `points` (N, 3) or (3,) in mm of the camera frame into this one."""
+        """Transform `points` (N, 3) or (3,) in mm from the camera frame into this view frame."""
         if self.kind is FrameKind.CAMERA:
             return np.asarray(points, dtype=np.float64)  # to the bit
         return self.pose_camera_frame.inverse().apply(points)
 
     def directions(self, vectors: Array) -> Array:
-        """Transform `vectors` (N, 3) of the camera frame into this one; a length of 0 stays."""
+        """Rotate `vectors` (N, 3) from the camera frame into this view frame, keeping their lengths."""
         if self.kind is FrameKind.CAMERA:
             return vectors
         turned: Array = vectors @ self.pose_camera_frame.rotation
         return turned
 
     def same_as(self, other: ViewFrame) -> bool:
-        """Whether another frame has the same kind and pose."""
+        """Whether another view frame has the same kind and pose as this view frame."""
         ours, theirs = self.pose_camera_frame, other.pose_camera_frame
         return (
             self.kind is other.kind
@@ -95,7 +95,7 @@ class ViewFrame:
         )
 
     def turned(self, about: int, degrees: float) -> ViewFrame:
-        """Turn the axes about axis number `about` by so many degrees, by the right-hand rule; the place stays."""
+        """Rotate the frame about its axis number `about` by `degrees`, right-handed; the origin stays."""
         angle, turn = np.radians(degrees), np.eye(3)
         first, second = (about + 1) % 3, (about + 2) % 3
         turn[first, first] = turn[second, second] = np.cos(angle)
@@ -108,12 +108,12 @@ CAMERA_FRAME = ViewFrame(FrameKind.CAMERA, Pose.identity())
 
 
 def shown_frame(part: ViewFrame | None, *, wanted: bool) -> ViewFrame:
-    """Choose the part's own frame where it is known and wanted, else the camera's."""
+    """Choose the frame to show points in: the part's if it is known and `wanted`, else the camera's."""
     return part if part is not None and wanted else CAMERA_FRAME
 
 
 def part_frame(pose_camera_part: Pose | None, lower: LightPlane | None) -> ViewFrame | None:
-    """Choose the part's own frame: its part coordinates, else that of its lower face, else none.
+    """Choose the part's own frame: its part coordinates, else a frame on its lower face; None without either.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ UNKNOWNS = 4
 
 
 def combined(contributions: Iterable[Contribution]) -> float:
-    """Compute the combined standard uncertainty in mm of independent contributions."""
+    """Compute the combined standard uncertainty of independent contributions: the root of the sum of squares."""
     return float(np.sqrt(sum(row.u_mm**2 for row in contributions)))
 
 
@@ -77,7 +77,7 @@ def budget(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Contribution, ...]:
-    """Compute the contribution of each cause to the uncertainty of a quantity q.
+    """Compute the uncertainty budget of a quantity q with the derivatives `gains` (J,) by the misfits of stretches.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def effects(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Effect, ...]:
-    """Compute the effect of each cause on p quantities that follow misfits with `gains` (p, J); else as `budget`."""
+    """Compute the effect of each cause of error on p quantities with derivatives `gains` (p, J) by J misfits."""
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []
@@ -129,7 +129,7 @@ def effects(
 
 
 def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribution, ...]:
-    """Compute the contribution of each cause to a quantity that follows several groups of quantities of one scan.
+    """Compute the uncertainty budget of a quantity that depends on several groups of quantities of one scan.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:
 
 
 def student_factor(k: float, contributions: Iterable[Contribution]) -> float:
-    """Compute the factor, to two decimals, that covers with a budget's ν_eff as much as `k` does where u is known.
+    """Compute the coverage factor, to two decimals, that gives u with few degrees of freedom the coverage of `k`.
 
     Examples
     --------

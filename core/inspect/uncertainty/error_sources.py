@@ -64,12 +64,12 @@ class Sources:
 
     @property
     def explained(self) -> Array:
-        """Effects (J, K′) of the common errors that a fit may estimate from the points."""
+        """Effects (J, K′) on the stretches of the common errors that a fit may estimate from the points."""
         return np.asarray(self.common[:, ~self.unexplained])
 
     @property
     def measured(self) -> Array:
-        """Effects (J, K″) of the common errors that a fit may estimate and whose size was measured."""
+        """Effects (J, K″) on the stretches of the common errors that a fit may estimate and whose size was measured."""
         return np.asarray(self.common[:, ~(self.unexplained | self.assumed)])
 
     @classmethod
@@ -82,7 +82,7 @@ class Sources:
         patch: NDArray[np.int64],
         errors: PointErrors,
     ) -> Sources:
-        """Divide a cloud's points into stretches and compute what acts on them.
+        """Divide a cloud's points into stretches of stripes, and compute how each cause of error acts on each stretch.
 
         Parameters
         ----------
@@ -153,16 +153,16 @@ class Sources:
         )
 
     def effects(self, others: Array) -> Array:
-        """Stack the effects A (J, n) = [`others` (J, q), `speckle`, `sweeps`]."""
+        """Stack the effects A (J, n) on the stretches: `others` (J, q), the fan's speckle, and the sweeps."""
         return np.hstack([others, self.speckle, self.sweeps])
 
     def information(self, others: Array, weight: Array) -> Array:
-        """Compute Aᵀ W A (n, n) of the `effects` A; `weight` (J,) is the diagonal of W."""
+        """Compute the information matrix Aᵀ W A (n, n) of the `effects` A, with the weights W = diag(`weight` (J,))."""
         of_swept, fan_rows = self.information_of_each(others, weight)
         return of_swept + fan_rows.T @ fan_rows
 
     def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
-        """Compute the `information` (n, n) of stretches of sweeps, and rows R (…, n) of the fan, which add Rᵀ R.
+        """Compute the information matrix (n, n) of the sweeps' stretches, and rows R of the fan, which add Rᵀ R.
 
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
@@ -175,7 +175,7 @@ class Sources:
         return of_swept, rows
 
     def mean(self, values: Array) -> Array:
-        """Compute the weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
+        """Compute the weighted mean (J,) or (J, …) over each stretch of the points' `values` (N,) or (N, …)."""
         columns = values.reshape(len(values), -1)
         means = np.column_stack([np.bincount(self.stretch, self.share * column) for column in columns.T])
         return np.asarray(means.reshape(len(self.own), *values.shape[1:]))

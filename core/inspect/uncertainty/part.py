@@ -65,7 +65,7 @@ class Warmth(NamedTuple):
 
     @classmethod
     def of(cls, celsius: float | None, u_celsius: float | None) -> Warmth:
-        """Take the temperature as stated, else as assumed."""
+        """Make a temperature in °C with its standard uncertainty; an assumed one if either is None."""
         if celsius is None or u_celsius is None:
             return cls(SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, assumed=True)
         return cls(celsius, u_celsius, assumed=False)
@@ -85,12 +85,12 @@ class TargetTemperature:
 
     @property
     def warmth(self) -> Warmth:
-        """Temperature of the plane target, stated or assumed."""
+        """Temperature of the plane target, stated or assumed, in °C, with its standard uncertainty."""
         return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:
-        """Expansion coefficient in 1/K of the plane target and its u, stated or assumed."""
+        """Expansion coefficient of the plane target and its standard uncertainty in 1/K, stated or assumed."""
         if self.alpha is None or self.u_alpha is None:
             return SUSPECTED_TARGET_ALPHA, SUSPECTED_TARGET_ALPHA_SD
         return self.alpha, self.u_alpha
@@ -134,7 +134,7 @@ class Part:
 
     @property
     def lets_light_in(self) -> float:
-        """Probability that light comes from below the part's surface, before any picture is seen.
+        """Prior probability, by what is stated of the part, that light comes from below its surface.
 
         Of an offset that was measured it is none: that holds all of it.
         """
@@ -144,12 +144,12 @@ class Part:
 
     @property
     def warmth(self) -> Warmth:
-        """Temperature of the part, stated or assumed."""
+        """Temperature of the part, stated or assumed, in °C, with its standard uncertainty."""
         return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:
-        """Expansion coefficient of the part in 1/K and its u: stated, the material's, or assumed."""
+        """Expansion coefficient of the part and its standard uncertainty in 1/K: stated, the material's, or assumed."""
         if self.alpha is not None and self.u_alpha is not None:
             return self.alpha, self.u_alpha
         known = Material(True) if self.material is None else MATERIALS[self.material]
@@ -157,17 +157,17 @@ class Part:
 
     @property
     def expansion_assumed(self) -> bool:
-        """Whether the part's expansion is assumed: neither it nor a material that gives it is stated."""
+        """Whether the expansion coefficient of the part is assumed, as neither it nor a known material is stated."""
         return self.alpha is None and self.material in (None, "sprayed")
 
     @property
     def thicker_mm(self) -> float:
-        """Correction in mm that is added to a thickness as light shows it."""
+        """Correction in mm to a measured thickness: the stated offset less the layer of spray."""
         return (self.offset_mm or 0.0) - (self.spray_mm or 0.0)
 
     @property
     def surface_rows(self) -> tuple[Contribution, ...]:
-        """Contributions of the offset and of the layer of spray to the uncertainty of a thickness; no zero rows."""
+        """Budget rows of a thickness for the stated offset and the layer of spray; no zero rows."""
         rows = [(Cause.PART_OFFSET, self.offset_sd_mm, self.offset_mm), (Cause.SPRAY, self.spray_sd_mm, self.spray_mm)]
         if self.material == "sprayed" and self.spray_mm is None:
             rows.append((Cause.SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
@@ -175,7 +175,7 @@ class Part:
 
     @property
     def surface_notes(self) -> tuple[Message, ...]:
-        """Notes on the correction that was added to a thickness, if any was."""
+        """Notes on the correction by offset and spray that was added to a thickness; () without one."""
         if not self.thicker_mm:
             return ()
         return (
@@ -189,7 +189,7 @@ class Part:
 
     @property
     def assumed(self) -> tuple[Message, ...]:
-        """Notes on what is assumed of the part."""
+        """Notes on the material and temperature that are assumed because they are not stated."""
         notes = []
         if self.material is None:
             alpha, u_alpha = self.expansion

@@ -80,7 +80,7 @@ class PointErrors:
 
     @property
     def doubts(self) -> Doubts:
-        """Doubts that anything measured in the scan proves something: by its facts, and by what uncertainties lack."""
+        """Reasons why nothing measured in the scan proves anything: facts of the scan, gaps in uncertainties."""
         missing = self.missing()
         of_u = (Doubt.of(note_of("inspection.missing_in_u", missing=missing)),) if missing else ()
         if self.facts is None:
@@ -96,7 +96,7 @@ class PointErrors:
         speckle: FanSpeckle | None = None,
         sweep_size: int = 3,
     ) -> PointErrors:
-        """Make the errors of points of a scan from its features, its sweeps' covariance and displaced calibrations.
+        """Make the errors of a scan's points from its features, the sweeps' covariance and displaced calibrations.
 
         `sweep_size` numbers describe a sweep.
         """
@@ -108,31 +108,31 @@ class PointErrors:
 
     @classmethod
     def of_fan(cls, pieces: Sequence[Centreline], common: CommonErrors) -> PointErrors:
-        """Make the errors of the points of the fan alone; `pieces` are its centrelines, averaged along themselves."""
+        """Make the errors of points of the fan alone, without sweeps; `pieces` are the fan's centrelines."""
         return cls(common=common, speckle_px=_correlation_px(pieces), swept=False)
 
     @property
     def calibrations(self) -> tuple[Cause, ...]:
-        """Calibrations (K,) that the common errors come from; () where they are not known."""
+        """Calibrations (K,) that the common errors come from, as causes; () if the errors are not known."""
         return tuple(CALIBRATIONS[source] for source in self.sources)
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Calibrations (K,) that the common errors come from, as `core.calibrate.deviations` names them."""
+        """Calibrations (K,) that the common errors come from, by name as "camera"; () if the errors are not known."""
         return () if self.common is None else self.common.sources
 
     def bent_light(self, cloud: Cloud) -> Array:
-        """Compute the standard uncertainty (N,) in mm of a cloud's depths by light of the fan in no planes; else 0."""
+        """Compute the standard uncertainty (N,) in mm of depths as the fan's light sheets are not plane; else 0."""
         if not self.knows(UNEXPLAINED) or self.common is None:
             return np.zeros(len(cloud))
         return self.common.sigma_of(UNEXPLAINED, cloud)
 
     def knows(self, source: Source) -> bool:
-        """Whether the errors of that calibration are among the common ones."""
+        """Whether the errors by the calibration `source` are among the common errors."""
         return self.common is not None and source in self.common.sources
 
     def missing(self) -> tuple[Message, ...]:
-        """List what an uncertainty made of these errors lacks, as objects of a sentence."""
+        """List what an uncertainty computed from these errors lacks, as messages to be put into a sentence."""
         lacking = []
         if self.swept and self.sweep_covariance is None:
             lacking.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
@@ -146,12 +146,12 @@ class PointErrors:
 
     @property
     def sweeps(self) -> int:
-        """Number of sweeps in the covariance."""
+        """Number of sweeps in the sweeps' covariance."""
         return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // self.sweep_size
 
     @cached_property
     def planes_by_cause(self) -> Array:
-        """Factor (3S, F + 3S) of the covariance of stacked π: by the fan's F cells, then all else; (0, F) if unknown.
+        """Factor (3S, F + 3S) of the sweep planes' covariance, F columns by the fan's speckle; (0, F) if unknown.
 
         With P their covariance and C that with the cells, the square root of P − C Cᵀ.
         """
@@ -162,11 +162,11 @@ class PointErrors:
         return np.hstack([shared, _root(self.sweep_covariance - shared @ shared.T)])
 
     def forms(self, rays: Array, uv: Array) -> Array:
-        """Compute the factors (N, sweep_size) of the numbers of a sweep at `rays` (N, 3) of pixels `uv` (N, 2)."""
+        """Compute the factors (N, sweep_size) of a sweep's parameters in 1/z at `rays` (N, 3) of pixels `uv`."""
         return row_forms(rays, uv[:, 1], self.image_rows, self.sweep_size)
 
     def own_sigma(self, cloud: Cloud) -> Array:
-        """Compute σ (N,) in mm of each depth less the share of its sweep's plane.
+        """Compute the σ (N,) in mm of each depth without the share of its sweep's light plane.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class PointErrors:
         return np.asarray(np.sqrt(own), dtype=np.float64)
 
     def places(self, cloud: Cloud) -> NDArray[np.int64]:
-        """Find which of the points of `speckle` each of a cloud's (N,) is; −1 for none of them."""
+        """Find the place (N,) of each of a cloud's points among the fan's points in `speckle`; −1 if it has none."""
         place = np.full(len(cloud), -1, dtype=np.int64)
         if self.speckle is not None:
             of_fan = np.flatnonzero(cloud.sweep < 0)
@@ -196,7 +196,7 @@ class PointErrors:
         return place
 
     def stretches(self, cloud: Cloud, part: NDArray[np.int64], place: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Number, from 0, the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,).
+        """Assign each point (N,) to a stretch of a stripe, numbered from 0; each stretch lies on one face `part`.
 
         Those of the fan are the cells of `speckle` where `place` (N,), as of `places`, knows the point.
         """
@@ -225,7 +225,7 @@ def _correlation_px(pieces: Sequence[Centreline]) -> float:
 
 
 def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number the patch of its `face` (N,) each point (N, 2) lies in: PATCHES × PATCHES over each face's extent."""
+    """Assign each of the points (N, 2) to one of PATCHES × PATCHES patches of its `face` (N,); return numbers (N,)."""
     number = np.zeros(len(flat), dtype=np.int64)
     for index in np.unique(face):
         mine = face == index
@@ -236,7 +236,7 @@ def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def pairs(first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number, from 0, each different pair of numbers ≥ 0."""
+    """Assign to each pair of integers ≥ 0 (N,) a number from 0, equal for equal pairs."""
     return np.asarray(np.unique(first * (second.max() + 1) + second, return_inverse=True)[1], dtype=np.int64)
 
 

@@ -66,7 +66,7 @@ class MeanSkewness(NamedTuple):
 
 
 def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> MeanSkewness:
-    """Compute the mean of points' skewness (N,) and its standard error, by the scatter between their sweeps (N,).
+    """Compute the mean `skewness` (N,) of the points' stripe sections, with a standard error from sweep to sweep.
 
     The error is infinite where the scatter of fewer than three sweeps, or none at all, would have to tell.
     """
@@ -83,7 +83,7 @@ def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> MeanSkewness:
 
 
 def is_surely_skewed(seen: MeanSkewness) -> bool:
-    """Whether sections are skewed by more than chance, lens and slanted faces explain.
+    """Whether stripe sections are skewed by more than chance, the lens and slanted faces explain.
 
     The scatter of n sweeps tells the error, so the limit is that of Student's t with n − 1 degrees of freedom.
     """
@@ -94,9 +94,7 @@ def is_surely_skewed(seen: MeanSkewness) -> bool:
 
 
 def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) -> Array:
-    """Estimate how far behind each part's surface its light comes from at most, on the mean, in mm of depth.
-
-    It is 0 where sections are not surely skewed.
+    """Estimate the largest mean depth in mm behind each face that its light may come from; 0 if not surely skewed.
 
     Parameters
     ----------
@@ -126,7 +124,7 @@ where sections tell little."""
 
 
 def unseen_mean_mm(seen: MeanSkewness, spread_mm: float, lets_light_in: float) -> float:
-    """Compute the standard uncertainty in mm by light from below where this mean skewness was found.
+    """Compute the standard uncertainty in mm by light from below a surface that the mean skewness does not exclude.
 
     Twice as much holds 95 % of what is left: that is one-sided, and reaches far. The skewness is known by the scatter
     of n sweeps, so it is weighed by Student's t with n − 1 degrees of freedom.
@@ -183,7 +181,7 @@ class LightBelow:
 def light_below(
     cloud: Cloud, part: NDArray[np.int64], direction: Array, stated: Part | None, light: PartLight | None = None
 ) -> LightBelow:
-    """Estimate light from below each face by its sections, and what they leave open; arguments as `farthest_mean_mm`.
+    """Estimate the mean depth in mm behind each face that its light comes from, as far as its sections show it.
 
     `stated` is what is known of the part; None: no more is reckoned with than what is seen. `light` is how much wider
     sections are on it than on the table: a face off the table is behind by what that may do, unless an offset that was
@@ -210,7 +208,7 @@ def light_below(
 
 
 def doubts_of_light(budget: Sequence[Contribution]) -> Doubts:
-    """Make the doubts of a value with this budget if skewed light makes up much of it; else ()."""
+    """Make the doubt that skewed light makes up much of a value's uncertainty, so that it proves nothing; else ()."""
     skewed = [row.u_mm for row in budget if row.source is Cause.SKEWED_LIGHT]
     rest = [row.u_mm for row in budget if row.source not in {Cause.SKEWED_LIGHT, *FROM_BELOW}]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
