@@ -26,7 +26,7 @@ CHECKED = frozenset((
 
 
 def left_by_check(doubts: Doubts) -> Doubts:
-    """Remove the doubts that measuring an artefact is to clear up."""
+    """Remove from doubts, reasons why a result proves nothing, those that measuring a known artefact answers."""
     return tuple(doubt for doubt in doubts if doubt.fact not in CHECKED)
 
 
@@ -70,7 +70,7 @@ class Artefact:
 
     @property
     def of_certificate(self) -> Certificate:
-        """Data of the certificate: number, laboratory and last day."""
+        """Number, laboratory and last valid day of the artefact's certificate."""
         return Certificate(self.certificate, self.laboratory, self.due)
 
 
@@ -93,39 +93,39 @@ class ArtefactCheck:
 
     @property
     def error_mm(self) -> float:
-        """Error in mm, measured − certified."""
+        """Error of the measured length in mm, measured − certified."""
         return self.measured_mm - self.artefact.value_mm
 
     @property
     def u_error_mm(self) -> float:
-        """Standard uncertainty of the error in mm, of measurement and certificate together."""
+        """Standard uncertainty in mm of the error, of measurement and certificate together."""
         return math.hypot(self.u_mm, self.artefact.U_mm / self.artefact.k)
 
     @property
     def e_n(self) -> float:
-        """Normalised error: error over its expanded uncertainty (k = 2), with its sign."""
+        """Normalised error E_n, with its sign: error over its expanded uncertainty (k = 2)."""
         return self.error_mm / (2 * self.u_error_mm)
 
     @property
     def p(self) -> float:
-        """Probability that chance alone makes so large an error, of a normal distribution."""
+        """Probability that an error as large as this one arises by chance, for normally distributed errors."""
         return math.erfc(abs(self.error_mm) / (self.u_error_mm * math.sqrt(2)))
 
     @property
     def lapsed(self) -> bool:
-        """Whether the certificate had expired on that day."""
+        """Whether the certificate had expired on the day of the check."""
         return self.artefact.of_certificate.lapsed(self.day)
 
     @property
     def own_doubts(self) -> Doubts:
-        """Doubts except those that the artefact is measured to clear up."""
+        """Doubts, reasons why the measurement proves nothing, without those that an artefact's measurement answers."""
         return left_by_check(self.doubts)
 
     @property
     def verdict(self) -> Literal["passed", "doubtful", "failed"]:
-        """Verdict: failed where |E_n| is above 1.
+        """Verdict on the check: failed if |E_n| is above 1, else doubtful or passed.
 
-        Else doubtful by its doubts, a lapsed certificate or the rig's history.
+        Doubtful by its doubts, a lapsed certificate or the rig's history.
         """
         if abs(self.e_n) > 1:
             return "failed"

@@ -36,16 +36,16 @@ class ControlChart:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Lower and upper limit."""
+        """Lower and upper control limit, in the unit of the values."""
         return self.lower, self.upper
 
     def contains(self, value: float) -> bool:
-        """Whether a value lies within the limits; false for one that is not known."""
+        """Whether a value lies within the control limits; false for NaN."""
         return self.lower <= value <= self.upper
 
 
 def control_chart(values: Array, stated: float) -> ControlChart:
-    """Compute the limits from values (n,) of steady checks in the order of time.
+    """Compute control limits from values (n,) of checks in order of time, or, if these are few, from `stated`.
 
     `stated` is their standard uncertainty.
     """

@@ -92,7 +92,7 @@ class Histogram:
 
 
 def run_chart(values: Array) -> RunChart | None:
-    """Compute the centre line and the limits of `values` (n,) in their order; None if n < 2."""
+    """Compute centre line, limits and values outside of a run chart of `values` (n,) in time order; None if n < 2."""
     if len(values) < 2:
         return None
     centre = float(values.mean())
@@ -102,7 +102,7 @@ def run_chart(values: Array) -> RunChart | None:
 
 
 def histogram(values: Array) -> Histogram:
-    """Count `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
+    """Count `values` (n,) in bins of equal width (Freedman, Diaconis 1981, or Sturges 1926), at most MOST_BINS."""
     if not np.ptp(values):
         counts, edges = np.histogram(values, 1)
     else:
