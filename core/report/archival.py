@@ -23,7 +23,7 @@ _NO_DATE = bytes((7, 234, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0))  # 2026-01-01
 
 
 def archived(data: bytes, attachments: Mapping[str, bytes]) -> bytes:
-    """Convert a report with these JSON files attached to PDF/A; not declared as such where a font in it is only named.
+    """Convert a report's PDF with attached JSON files to PDF/A-3b; without the PDF/A mark if a font is not embedded.
 
     The same bytes for the same report and files.
     """

@@ -53,7 +53,7 @@ class CalibrationMark:
     made_at: datetime | None = None
 
     def age(self, at: datetime) -> timedelta | None:
-        """Compute the age of the calibration at a time; None where that is not known."""
+        """Compute the age of the calibration at the time `at`; None if it is not known when it was made."""
         return None if self.made_at is None else at - self.made_at
 
 
@@ -210,7 +210,7 @@ class ReportedStudy:
     figure: Callable[[Any, float], Any] | None = None
 
     def title(self, words: Words = ENGLISH) -> str:
-        """What it is called: 'Gauge R&R', 'Series: thickness'."""
+        """Write the title of the study: 'Gauge R&R', 'Series: thickness'."""
         kind = words(self.kind)
         return words("{name}: {value}", name=kind, value=self.name) if self.name else kind
 
@@ -367,13 +367,13 @@ class ReportContent:
 
     @property
     def inputs_digest(self) -> str:
-        """SHA-256 in hex over all input hashes: one line `hash  path` each, in the order of their paths."""
+        """SHA-256 in hex over the hashes of all input files: one line `hash path` each, sorted by path."""
         lines = "".join(f"{self.hashes[path]}  {path}\n" for path in sorted(self.hashes))
         return hashlib.sha256(lines.encode()).hexdigest()
 
     @property
     def settings_digest(self) -> str:
-        """SHA-256 in hex over version, method and settings: one line `name=value` each, in the order of names."""
+        """SHA-256 in hex over version, method and settings: one line `name=value` each, sorted by name."""
         lines = [f"version={self.version}", f"method={self.method}"]
         lines += [f"{name}={value}" for name, value in sorted(self.settings.items())]
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
@@ -385,12 +385,12 @@ class ReportContent:
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Characteristics in a row: the gauge's thickness first, then those of the inspection."""
+        """Measured characteristics of the part: the gauge's thickness first, then those of the inspection."""
         return self.results.rows
 
     @property
     def points_used(self) -> Mapping[str, NDArray[np.int64]]:
-        """Indices of the points that each face or feature rests on, by its name."""
+        """Indices into the cloud of the points that each face or feature rests on, by the face's or feature's name."""
         if self.gauge is None:
             return self.points
         faces = {label("Upper face"): self.gauge.upper.indices, label("Lower face"): self.gauge.lower.indices}
@@ -398,7 +398,7 @@ class ReportContent:
 
     @property
     def shown_at(self) -> tuple[tuple[Characteristic, NDArray[np.int64]], ...]:
-        """Worst characteristic of each feature, and the points it rests on; at most MOST_CALLOUTS, the worst first.
+        """Worst characteristic of each feature with its points' indices, for callouts: MOST_CALLOUTS, worst first.
 
         The gauge's thickness is shown on its upper face.
         """
@@ -414,13 +414,13 @@ class ReportContent:
 
     @property
     def view_shown(self) -> SeenFrom | None:
-        """View of the surface as the user left it in 3D, if anything of this surface is in sight so; else None."""
+        """View of the surface that the user chose in 3D; None if there is none, or nothing of the surface is in it."""
         points = self.mesh.vertices if len(self.mesh.triangles) else self.cloud.points
         return self.view if self.view is not None and self.view.in_sight(np.asarray(points)).any() else None
 
     @property
     def at_reference(self) -> bool:
-        """Whether any result is stated at 20 °C, or may be; its own note then states what that changed."""
+        """Whether any characteristic is corrected to 20 °C, or it is not known whether it is."""
         return any(one.at_20 is not False for one in self.characteristics)
 
     @property
@@ -451,18 +451,18 @@ class ReportContent:
 
     @property
     def nominal_mm(self) -> float | None:
-        """Nominal value of the thickness, if one was given."""
+        """Nominal value of the thickness in mm; None if none was given."""
         return self.gauge.nominal_mm if self.gauge else None
 
     @property
     def repeat_statistics(self) -> RepeatStatistics | None:
-        """Statistics of the repeats, or None without any."""
+        """Statistics of the thicknesses of repeated scans; None without repeated scans."""
         thicknesses = [repeat.thickness_mm for repeat in self.repeats]
         return repeat_statistics(thicknesses, self.nominal_mm) if thicknesses else None
 
     @property
     def printable(self) -> Mapping[str, str]:
-        """Name and heading of those SECTIONS for which there is content, hidden or not."""
+        """Name and heading of each section that this report has content for, sections that are hidden included."""
         missing = {
             "view": self.view_shown is None,
             "frame": self.overlay is None,
@@ -486,7 +486,7 @@ class ReportContent:
 
     @property
     def facts(self) -> Mapping[str, tuple[Fact, ...]]:
-        """Facts of each part of the work, by its name."""
+        """Facts (name, value, unit) on each part of the work, by its name: "camera", "planes", "scan", …."""
         artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
         return {
             "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
@@ -500,7 +500,7 @@ class ReportContent:
 
     @property
     def scan_facts(self) -> tuple[Fact, ...]:
-        """Facts of the scan."""
+        """Facts (name, value, unit) on the scan: frames, points, σ."""
         cloud = self.cloud
         extent = np.ptp(cloud.points, axis=0) if len(cloud) else None
         triangles = len(self.mesh.triangles)
@@ -508,7 +508,7 @@ class ReportContent:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """Notes of the report, the gauge and both calibrations, each once, the gravest first."""
+        """Notes of the report, the results and both calibrations, each once, the gravest first."""
         of_gauge = self.gauge.notes if self.gauge else ()
         of_each = [
             Message("report.note_of_result", "{name}: {note}", name=result_name(one), note=note)

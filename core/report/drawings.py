@@ -50,7 +50,7 @@ from core.report.plots.run_chart import repeats_figure
 
 
 def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
-    """Collect the functions that draw each figure of the report, by its name."""
+    """Collect the functions that draw the report's figures, by the figure's name, for what `content` holds."""
     width = TEXT_WIDTH / mm
     gauge, overlay, size = content.gauge, content.overlay, content.camera.camera.image_size
     drawings: dict[str, Callable[[], Figure]] = {}

@@ -70,7 +70,7 @@ LIMITS = (
 
 
 def prepare() -> None:
-    """Load fonts and draw once, which takes time before a first report only."""
+    """Load the fonts and draw one small figure, so that the first report takes no longer than others."""
     prepare_reportlab()
     figure = new_figure(20, 20)
     figure.add_axes((0.2, 0.2, 0.7, 0.7)).set_title("1")
@@ -78,7 +78,7 @@ def prepare() -> None:
 
 
 def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
-    """Make the report as the bytes of a PDF; nothing is written to disk.
+    """Lay out the report and return the bytes of its PDF; nothing is written to disk.
 
     The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
     are embedded, and the file is PDF/A. Where this computer has no font for an East Asian text it is not, and a note

@@ -128,7 +128,7 @@ SIZES = (11.5, 11.0, 10.5, 10.0, 9.5, 9.0, 8.5, 8.0)
 
 
 def quick_card(language: str = "en", paper: Paper = "A4") -> bytes:
-    """Make the card as the bytes of a PDF of one page; the same language gives the same bytes.
+    """Make the quick card, one page on each step and each word, as the bytes of a PDF in `language` on `paper`.
 
     Raises
     ------

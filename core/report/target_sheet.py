@@ -65,7 +65,7 @@ class SheetLayout:
 
 
 def target_sheet(target: Target, paper: SheetPaper = "A4", *, title: str = "") -> bytes:
-    """Draw `target` to scale on one page, as the bytes of a PDF; upright or across, as it fits better.
+    """Draw a calibration target to scale on one page, upright or across, and return the bytes of the PDF.
 
     Everything is drawn as lines and areas, so the target is as true as the printer. The same target gives the same
     bytes. `title` is a name of the user's to print with it.
@@ -92,7 +92,7 @@ def target_sheet(target: Target, paper: SheetPaper = "A4", *, title: str = "") -
 
 
 def sheet_layout(target: Target, paper: SheetPaper) -> SheetLayout:
-    """Place `target` on `paper`: in the middle of the sheet, or as near to it as the rulers leave room.
+    """Compute where `target` lies on `paper`: in the middle, or as near to it as the rulers leave room.
 
     Raises
     ------
@@ -254,7 +254,7 @@ class TargetArt:
 
 
 def target_art(target: Target) -> TargetArt:
-    """Make the black areas of `target`, at its true size.
+    """Compute the black areas of a calibration target in mm, at its true size.
 
     Raises
     ------

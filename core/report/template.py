@@ -89,6 +89,6 @@ class ReportTemplate:
 
     @property
     def words(self) -> tuple[object, ...]:
-        """Texts that it adds to a report; empty if there are none."""
+        """Texts of the template that are printed in a report; empty if there are none."""
         said = (self.name, self.address, self.footer, self.text, self.signatures)
         return said if any(said) else ()

@@ -35,7 +35,7 @@ class ToleranceScale:
 
     @classmethod
     def of(cls, one: Characteristic) -> ToleranceScale | None:
-        """Make the scale of a result; None without limits, or where value or uncertainty is not known."""
+        """Make the tolerance scale of a characteristic; None without limits, or if its value or U is not known."""
         unit, factor = shown_unit(one)
         if one.limits is None or one.deviation is None or not math.isfinite(one.deviation + one.U):
             return None
@@ -43,21 +43,21 @@ class ToleranceScale:
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Limits that there are, in order."""
+        """Finite limits of the deviation, in order, in the unit of the scale."""
         return tuple(limit for limit in (self.lower, self.upper) if math.isfinite(limit))
 
     def share(self, value: float) -> float:
-        """Compute the place of a deviation on the scale, 0 … 1; the nominal value is at 0.5, beyond the ends 0 or 1."""
+        """Compute the place of a deviation on the scale, from 0 at the left end to 1; nominal is at 0.5."""
         known = [abs(limit) for limit in self.limits]
         half = _ROOM * max(*known, abs(self.deviation) + self.U, 1e-9) if known else 1.0
         return min(max(0.5 * (1 + value / half), 0.0), 1.0)
 
     def limit_text(self, limit: float, words: Words = ENGLISH) -> str:
-        """Write a limit: '+0.2 mm'."""
+        """Write a limit of the deviation with its sign and unit: '+0.2 mm'."""
         return f"{words.numeral(f'{limit:+g}')} {self.unit}"
 
     def deviation_text(self, words: Words = ENGLISH) -> str:
-        """Write the deviation: 'deviation +0.012 mm ± 0.024 mm'."""
+        """Write the deviation with its U: 'deviation +0.012 mm ± 0.024 mm'."""
         decimals = max(decimals_of(self.U), 0)
         return words(
             "deviation {deviation} ± {U}",

@@ -29,7 +29,7 @@ class Words:
 
     @classmethod
     def of(cls, name: str) -> Words:
-        """Load the words of a language by its name."""
+        """Load the words of the language called `name`, as "de"."""
         return cls(language(name))
 
     def __call__(self, said: str | Message, /, **values: object) -> str:
@@ -37,13 +37,13 @@ class Words:
         return self.language(said) if isinstance(said, Message) else self.language.label(said, **values)
 
     def known(self, said: str | Message) -> str:
-        """Translate a message or fixed words of other rooms; anything else, a name, stays as it is."""
+        """Translate a message or fixed words of another module; a name, which is in no catalogue, stays as it is."""
         return self.language(said) if isinstance(said, Message) and said.code else self.language.label(str(said))
 
     def fixed(self, value: float, decimals: int, *, signed: bool = False) -> str:
-        """Format `value` with so many decimals, a true minus sign and no minus zero.
+        """Format `value` with `decimals` decimals, a true minus sign and no minus zero; `signed`: with its sign.
 
-        Negative: rounded to tens, hundreds.
+        With negative decimals it is rounded to tens, hundreds.
         """
         if not math.isfinite(value):
             return self("unknown")
@@ -54,28 +54,28 @@ class Words:
         return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
 
     def general(self, value: float) -> str:
-        """Format a value as it was stated: no more digits than it has, a power of ten for very small and large ones."""
+        """Format a number with no more digits than it has; with a power of ten if very small or large."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
-        """Join several texts to a list, `how` as in `core.messages`."""
+        """Join texts to a list by commas; `how` ";" joins by semicolons, and "and" puts "and" before the last."""
         return self.language.joined(texts, how)
 
     def in_unit(self, quantity: str, unit: str) -> str:
-        """Write the name of a column or an axis, with the unit of its numbers."""
+        """Write the heading of a column or an axis, the quantity and its unit: 'height, mm'."""
         return self.language.label("{quantity}, {unit}", quantity=quantity, unit=unit)
 
     def time(self, at: datetime, *, seconds: bool = False) -> str:
-        """Format date and time of day, in the time zone that `at` is in."""
+        """Format date and time of day in the time zone of `at`; with seconds if `seconds`."""
         return self.language.time(at, seconds=seconds)
 
     def day(self, on: date) -> str:
-        """Format a date without time of day."""
+        """Format a date, without the time of day."""
         return self.language.day(on)
 
     def numeral(self, digits: str) -> str:
-        """Convert digits to the language's decimal sign and a true minus sign."""
+        """Convert a number's digits to the language's decimal sign and a true minus sign."""
         return self.language.numeral(digits)
 
 
@@ -87,17 +87,17 @@ SHORT_HASH = 12
 
 
 def short_hash(digest: str) -> str:
-    """Shorten a hash: '522c08e52394…'."""
+    """Shorten a hash to its first characters: '522c08e52394…'."""
     return f"{digest[:SHORT_HASH]}…"
 
 
 def points_counted(number: int) -> Message:
-    """Make the message of a number of points: '1 204 points'."""
+    """Make the message on a number of points: '1 204 points'."""
     return plural_message("report.points", "{n:,} point", "{n:,} points", n=number)
 
 
 def grouped(number: int) -> str:
-    """Format an integer with no-break spaces between thousands."""
+    """Format an integer with no-break spaces between groups of three digits."""
     return f"{number:,}".replace(",", NO_BREAK_SPACE)
 
 
@@ -111,18 +111,18 @@ SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_P
 
 
 def fixed(value: float, decimals: int, *, signed: bool = False) -> str:
-    """Format `value` in English with so many decimals: see `Words.fixed`."""
+    """Format `value` in English with `decimals` decimals, a true minus sign and no minus zero."""
     return ENGLISH.fixed(value, decimals, signed=signed)
 
 
 def with_uncertainty(value: float, uncertainty: float, words: Words = ENGLISH) -> tuple[str, str]:
-    """Round value and uncertainty alike, the uncertainty to two significant digits."""
+    """Format a value and its uncertainty with the same decimals, the uncertainty to two significant digits."""
     decimals = decimals_of(uncertainty)
     return words.fixed(value, decimals), words.fixed(uncertainty, decimals)
 
 
 def count(number: int, noun: str) -> str:
-    """Write a number with its noun: '1 frame', '1 204 frames', in English, whatever the noun."""
+    """Write a number with an English noun: '1 frame', '1 204 frames'."""
     return f"{grouped(number)} {noun}{'' if number == 1 else 's'}"
 
 
@@ -132,23 +132,23 @@ def thickness_line(gauge: GaugeResult, words: Words = ENGLISH) -> str:
 
 
 def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Write a value with its U: '50.012 mm ± 0.024 mm (k = 2)', or the same in degrees."""
+    """Write a characteristic's value with its U: '50.012 mm ± 0.024 mm (k = 2)'; angles in degrees."""
     return " ".join(value_parts(one, words))
 
 
 def value_parts(one: Characteristic, words: Words = ENGLISH) -> tuple[str, str]:
-    """Write a value with its U in two parts: '50.012 mm ± 0.024 mm' and '(k = 2)', or a note on an unknown U."""
+    """Write a value with its U as two texts: '50.012 mm ± 0.024 mm', and '(k = 2)' or that U is not known."""
     unit, factor = shown_unit(one)
     return _parts(factor * one.value, factor * one.U, one.k, unit, words)
 
 
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Write the name of a characteristic, its kind in the report's language: "top flatness", "stairs height 2"."""
+    """Write the name of a characteristic with its kind translated: "top flatness", "stairs height 2"."""
     return words(result_name(one))
 
 
 def result_name(one: Characteristic) -> Message:
-    """Make the name of a characteristic as a message."""
+    """Make the name of a characteristic as a message, in which the kind is translated."""
     feature, kind, number = one.name.rpartition(one.kind)
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
         return plain(one.name)  # somebody's own name, as of a cut
@@ -156,13 +156,13 @@ def result_name(one: Characteristic) -> Message:
 
 
 def name_within(one: Characteristic, feature: str, words: Words = ENGLISH) -> str:
-    """Write the name of a result under its feature: "flatness", "height 2", or the name a user gave it."""
+    """Write the name of a characteristic without its feature's: "flatness", "height 2", or the name a user gave it."""
     own = one.name.removeprefix(f"{feature} ")
     return words(result_name(replace(one, name=own)))
 
 
 def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Write the name of a characteristic at the beginning of a line: "Thickness"; a feature's name stays as typed."""
+    """Write the name of a characteristic for the start of a line: "Thickness"; a feature's name stays as typed."""
     shown = shown_name(one, words)
     return capital(shown) if one.name.startswith(one.kind) else shown
 
@@ -173,17 +173,17 @@ def verdict_title(verdict: str, words: Words = ENGLISH) -> str:
 
 
 def shown_unit(one: Characteristic) -> tuple[str, float]:
-    """Return the unit a characteristic is printed in, and the factor to it."""
+    """Return the unit a characteristic is printed in, and the factor from its value's unit to that unit."""
     return ("°", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
 
 
 def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
-    """Write a number with its unit, without a break between them: '0.02 mm', but '90°', as ISO 80000-1 has it."""
+    """Write a number with its unit, without a line break between them: '0.02 mm', '90°'."""
     return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
 
 
 def unbroken(text: str) -> str:
-    """Replace the spaces of a text by no-break ones."""
+    """Replace the spaces of a text by no-break spaces."""
     return text.replace(" ", NO_BREAK_SPACE)
 
 
@@ -196,7 +196,7 @@ def _parts(value: float, U: float, k: float, unit: str, words: Words) -> tuple[s
 
 
 def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
-    """Write the sentence that explains the number behind ±."""
+    """Write the sentence that explains what ± means: U = k·u, its coverage, and u; or that there is no uncertainty."""
     if not math.isfinite(U):
         return words("Without an uncertainty the value is no complete result of a measurement.")
     coverage = COVERAGE.get(float(k))
@@ -213,14 +213,14 @@ PROVES_NOTHING = label(
 
 
 def verdict_sentence(gauge: GaugeResult, words: Words = ENGLISH) -> str:
-    """Write the reason of the verdict on a thickness (ISO 14253-1), with the numbers that decide."""
+    """Write why a thickness has its verdict (ISO 14253-1), with the numbers that decide."""
     if gauge.limits is None:
         return words("No nominal value with a tolerance was given, so the thickness is stated without a verdict.")
     return decision_sentence(thickness_characteristic(gauge), words)
 
 
 def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Write the reason of the decision on a characteristic (ISO 14253-1), with the numbers that decide."""
+    """Write why a characteristic has its verdict (ISO 14253-1), with the numbers that decide."""
     if one.limits is None or one.deviation is None:
         return words("No nominal value with a tolerance was given, so the result is stated without a verdict.")
     if one.doubts:
@@ -231,13 +231,13 @@ def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
 
 
 def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
-    """Write the permitted deviations: '±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm'; "" for none."""
+    """Write the permitted deviations: '±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm'; "" without limits."""
     allowed = permitted(one)
     return "" if allowed is None else words(allowed)
 
 
 def permitted(one: Characteristic) -> Message | None:
-    """Make the permitted deviations as a message; None without any limit."""
+    """Make the message on a characteristic's permitted deviations; None without any finite limit."""
     unit, factor = shown_unit(one)
     if one.limits is None:
         return None
@@ -291,7 +291,7 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
 def limits_of_thickness(
     gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
 ) -> tuple[str, ...]:
-    """List what no thickness of this instrument covers; `temperatures`: whether they are stated.
+    """List in sentences what a thickness does not cover; `temperatures`: whether temperatures are stated.
 
     `corrected`: whether it is stated at 20 °C.
     """
@@ -314,7 +314,7 @@ def limits_of_thickness(
 def limits_of_inspection(
     words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
 ) -> tuple[str, ...]:
-    """List what no inspection of this instrument covers; `corrected`: whether a length is stated at 20 °C."""
+    """List in sentences what a plan's results do not cover; `corrected`: whether a length is stated at 20 °C."""
     return (
         words("Each result is what its rule says, of the points that were measured; it is no local length."),
         words(
@@ -331,7 +331,7 @@ def limits_of_inspection(
 
 
 def limits_of_cloud(words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
-    """List what no cloud of this instrument covers; `temperatures`: whether they are stated."""
+    """List in sentences what a measured cloud does not cover; `temperatures`: whether temperatures are stated."""
     return (
         words(
             "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "
@@ -350,7 +350,7 @@ def _temperatures_used(words: Words) -> str:
 
 
 def limit_of_temperature(stated: bool, words: Words = ENGLISH) -> str:
-    """Write what a temperature, stated or not, was not used for."""
+    """Write that nothing is corrected to 20 °C, and where temperatures, if `stated`, come from."""
     if stated:
         return words("Temperatures are those the operator stated; nothing is corrected to 20 °C.")
     return words("Temperature was not measured; nothing is corrected to 20 °C.")
@@ -359,9 +359,9 @@ def limit_of_temperature(stated: bool, words: Words = ENGLISH) -> str:
 def temperatures_line(
     air_celsius: float | None, part_celsius: float | None, words: Words = ENGLISH, *, corrected: bool = False
 ) -> str:
-    """Write the temperatures: 'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made'.
+    """Write the temperatures in °C: 'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made'; "" without.
 
-    "" where neither is known.
+    The note on the correction is left out if `corrected`.
     """
     known = {label("air {value}"): air_celsius, label("part {value}"): part_celsius}
     shown = [words(name, value=f"{words.fixed(value, 1)} °C") for name, value in known.items() if value is not None]
@@ -371,7 +371,7 @@ def temperatures_line(
 
 
 def target_in_words(target: Target, words: Words = ENGLISH) -> str:
-    """Describe a target: 'checkerboard, 17 × 12 inner corners, 10 mm'."""
+    """Describe a calibration target: 'checkerboard, 17 × 12 inner corners, 10 mm'."""
     if isinstance(target, Checkerboard):
         corners = words("inner corners")
         size = f"{words.general(target.square_mm)} mm"

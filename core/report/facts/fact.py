@@ -72,7 +72,7 @@ class Fact:
 
     @property
     def decimals(self) -> int | None:
-        """Decimals of a real number: two digits of its uncertainty where that is known, else `digits`.
+        """Number of decimals to show: two significant digits of the uncertainty if there is one, else `digits`.
 
         Examples
         --------
@@ -84,16 +84,16 @@ class Fact:
         return decimals_of(self.sd) if self.sd is not None and self.sd > 0 else self.digits
 
     def title(self, words: Words) -> str:
-        """Write the name, with the coverage of its interval: 'Cg (95 %)'."""
+        """Write the fact's name in the reader's language, with the coverage of its interval: 'Cg (95 %)'."""
         label = words.known(self.label)
         return label if self.interval is None else words("{quantity} (95 %)", quantity=label)
 
     def heading(self, words: Words) -> str:
-        """Write the name at the head of a row."""
+        """Write the fact's name in the reader's language as a row's label, beginning with a capital letter."""
         return heading(self.title(words))
 
     def text(self, words: Words) -> str:
-        r"""Write value, uncertainty, unit and interval in the reader's language.
+        r"""Write the fact's value, uncertainty, unit and interval as one text in the reader's language.
 
         Examples
         --------
@@ -115,7 +115,7 @@ class Fact:
         return words("{value} ({low} to {high})", value=said, low=low, high=high)
 
     def parts(self, words: Words) -> tuple[str, str]:
-        r"""Write value and uncertainty as columns of a table, without the unit; "" for a missing uncertainty.
+        r"""Write value and uncertainty as two cells of a table, without the unit; "" for no uncertainty.
 
         Examples
         --------
@@ -130,7 +130,7 @@ class Fact:
         return self._number(self.value, words), sd
 
     def column(self, words: Words) -> str:
-        """Write the head of the column of `parts`: the name with the unit."""
+        """Write the fact's name with its unit, as the head of a table's column."""
         title = self.title(words)
         return words.in_unit(title, self.unit) if self.unit else title
 
@@ -152,7 +152,7 @@ class Fact:
 
 
 def heading(name: str) -> str:
-    """Write the head of a row or a column: with a capital, except for a symbol, which is a letter alone.
+    """Capitalise a name for the head of a row or column, unless it begins with a symbol of one letter, as "s (n − 1)".
 
     Examples
     --------
@@ -163,10 +163,10 @@ def heading(name: str) -> str:
 
 
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:
-    """Select the facts that are for a reader."""
+    """Select the facts meant for the reader `reader` or for readers with less knowledge."""
     return tuple(fact for fact in facts if fact.level <= reader)
 
 
 def named(of: str | Message, facts: Iterable[Fact]) -> tuple[Fact, ...]:
-    """Add to the name of each fact the result it is `of`, where facts of several results are listed."""
+    """Prefix the name of each fact with the result `of` that it belongs to: 'ball, diameter'."""
     return tuple(replace(fact, label=Message("told.named", "{of}, {name}", of=of, name=fact.label)) for fact in facts)

@@ -35,7 +35,7 @@ MANY = 1000
 
 
 def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
-    """Make the facts of the contribution |c|·u(x) of each input, and of their sum."""
+    """Make the facts on an uncertainty budget: the contribution |c|·u(x) of each input, then u, ν_eff and U."""
     unit, factor = shown_unit(one)
     digits = _digits(one)
     root = label("Root of the sum of squares of all rows (k = 1)")
@@ -58,7 +58,7 @@ ALWAYS_TOLD = (
 
 
 def reported_rows(one: Characteristic) -> tuple[Contribution, ...]:
-    """Return the rows of its budget, and for a length those of size and temperatures that add nothing.
+    """Return the rows of a characteristic's uncertainty budget; for a length also rows of 0 for size and temperature.
 
     Of a budget that is not of this program's causes, of a comparison, which they cancel in, and of one of which it is
     not known whether temperatures are in it, the rows alone.
@@ -70,7 +70,7 @@ def reported_rows(one: Characteristic) -> tuple[Contribution, ...]:
 
 
 def largest_row(one: Characteristic) -> tuple[Contribution, float] | None:
-    """Find the row that contributes most to u, and its share of u² (0 to 1); None where not every row is known."""
+    """Find the budget row that contributes most to u, and its share of u² (0 to 1); None if u is 0 or not known."""
     variance = sum(row.u_mm**2 for row in one.budget)
     if not 0 < variance < math.inf:
         return None
@@ -79,9 +79,9 @@ def largest_row(one: Characteristic) -> tuple[Contribution, float] | None:
 
 
 def input_cells(one: Characteristic) -> tuple[tuple[Fact, ...], ...]:
-    """Make the cells of each input.
+    """Make the table rows of an uncertainty budget, one for each input, each a tuple of facts.
 
-    Value, distribution, u(x), sensitivity |c|, contribution, freedom, share of variance.
+    A row has value, distribution, u(x), sensitivity |c|, contribution, freedom, share of variance.
     """
     _, factor = shown_unit(one)
     variance = sum(row.u_mm**2 for row in one.budget if math.isfinite(row.u_mm)) or 1.0
@@ -123,7 +123,7 @@ def _rounded(name: str, value: float | None, unit: str = "") -> Fact:
 
 
 def freedom_fact(name: str, dof: float, level: Reader = Reader.AUDITOR) -> Fact:
-    """Make the fact of degrees of freedom; very many are shown as "more than"."""
+    """Make the fact on a number of degrees of freedom; a very large finite one is shown as "> MANY"."""
     many = MANY < dof < math.inf
     value = Message("told.more_than", "> {number}", number=MANY) if many else dof
     return Fact(name, value, digits=0 if dof >= 10 else 1, level=level)

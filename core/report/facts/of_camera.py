@@ -32,7 +32,7 @@ CORNERS = label("corners off by")
 
 
 def camera_facts(calibration: CameraCalibration, expected: ExpectedError | None = None) -> tuple[Fact, ...]:
-    """Make the facts of a camera's calibration; `expected` is the error at the middle depth of its views, if known."""
+    """Make the facts on a camera calibration; `expected` is the error at the middle depth of its views, if known."""
     if not calibration.views:
         return (Fact(label("views"), label("calibrated by another program")),)
     tilt = math.degrees(calibration.tilt_range)
@@ -78,7 +78,7 @@ def camera_facts(calibration: CameraCalibration, expected: ExpectedError | None 
 
 
 def parameter_facts(calibration: CameraCalibration) -> tuple[Fact, ...]:
-    """Make the facts of the model's parameters, each with its standard deviation; without those left out."""
+    """Make the facts on the camera's parameters with their standard deviations; parameters fixed at 0 are left out."""
     values = zip(CAMERA_PARAMETERS, parameter_values(calibration), strict=True)
     return tuple(
         parameter_fact(name, value, calibration.sd[name]) for name, value in values if value or calibration.sd[name]
@@ -86,7 +86,7 @@ def parameter_facts(calibration: CameraCalibration) -> tuple[Fact, ...]:
 
 
 def parameter_fact(name: str, value: float, sd: float) -> Fact:
-    """Make the fact of one parameter; a standard deviation of zero means that there is none."""
+    """Make the fact on the camera parameter `name`; `sd` is its standard deviation, 0 if it has none."""
     symbol, unit, tip = PARAMETERS[name]
     digits, spread = (decimals_of(sd), sd) if sd > 0 else (None, None)
     about = Message("told.tip_parameter", "{what} (± standard deviation)", what=tip)

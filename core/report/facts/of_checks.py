@@ -49,7 +49,7 @@ class Check(Protocol):
 
 
 def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, ...]:
-    """Make the facts of how far off camera and laser are; `chart` are the limits by the rig's history."""
+    """Make the facts on an interim check: how far off camera and laser are; `chart` has the rig's control limits."""
     facts = [
         used_fact(label("pictures"), check.poses, label("Pictures that say something, and all there are")),
         Fact(
@@ -103,16 +103,16 @@ class PastCheck(Protocol):
 
 
 def history_fact(rig: str, checks: int) -> Fact:
-    """Make the fact of whose history it is, and how many checks are in it."""
+    """Make the fact on how many checks the history of the rig called `rig` holds."""
     of = plural_message("told.rig", "{name}: {n:,} check", "{name}: {n:,} checks", n=checks, name=rig)
     never = Message("told.never_checked", "{name}: never checked on this computer", name=rig)
     return Fact(label("rig"), of if checks else never)
 
 
 def history_table(checks: Iterable[tuple[PastCheck, ControlChart]]) -> FactTable:
-    """Make the table of the checks of a rig with the limits of its chart.
+    """Make the table of a rig's past checks, each with the limits of its control chart.
 
-    The result, and by how much a step was off.
+    A row has the result, and by how much a step was off.
     """
     columns = (
         Column(label("pictures taken")),
@@ -170,7 +170,7 @@ def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
 
 
 def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
-    """Make the facts of a re-adjustment: what it changes, how certain that is, and its effect."""
+    """Make the facts on a re-adjustment of camera and fan: the changes, how certain they are, and their effect."""
     record = done.record
     was_chance = Message("told.was_chance", "{what}; before: {p:.2g}", what=PROBABILITY, p=record.p_before)
     return (
@@ -214,7 +214,7 @@ def _changes(done: ProposedReadjustment) -> tuple[Fact, ...]:
 
 
 def artefact_facts(check: ArtefactCheck) -> tuple[Fact, ...]:
-    """Make the facts of a measured artefact, and how it agrees with its certificate."""
+    """Make the facts on a measured artefact: its length, its certificate, and how far the two agree."""
     known, U = check.artefact, 2 * check.u_mm
     due = label("not stated") if known.due is None else known.due.isoformat()
     return (

@@ -44,7 +44,7 @@ class Compared(Protocol):
 
 
 def comparison_facts(found: Compared) -> tuple[Fact, ...]:
-    """Make the facts of a comparison: with what, where it differs, and from which deviation on that is detected."""
+    """Make the facts on a comparison of two surfaces: the other surface, what differs, and the level of detection."""
     return (
         Fact(label("compared with"), plain(found.other)),
         Fact(label("aligned"), ALIGNED[found.alignment], level=Reader.AUDITOR),

@@ -18,7 +18,7 @@ HEADS = (NOMINAL, PERMITTED, MEASURED, EXPANDED, FACTOR, DEVIATION, VERDICT)
 
 
 def characteristic_facts(one: Characteristic) -> tuple[Fact, ...]:
-    """Make the facts of a characteristic: value with U, nominal value, deviation, and decision."""
+    """Make the facts on a characteristic: value with U, nominal value, deviation, and verdict."""
     unit, factor = shown_unit(one)
     digits, U = decimals_of(factor * one.U), factor * one.U if math.isfinite(one.U) else None
     name = Message("told.with_k", "{name} (k = {k:g})", name=result_name(one), k=one.k)
@@ -41,7 +41,7 @@ def characteristic_facts(one: Characteristic) -> tuple[Fact, ...]:
 
 
 def characteristic_cells(one: Characteristic, words: Words) -> tuple[str, ...]:
-    """Make the cells of HEADS of a characteristic; "" for missing ones."""
+    """Write the cells of a characteristic's table row under the columns HEADS; "" where there is no value."""
     unit, _ = shown_unit(one)
     value, *others, verdict = characteristic_facts(one)
     deviation, nominal, allowed = (fact.parts(words)[0] for fact in others) if others else ("", "", "")

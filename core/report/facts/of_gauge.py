@@ -18,7 +18,7 @@ UPPER, LOWER = label("upper face"), label("lower face")
 
 
 def gauge_facts(gauge: GaugeResult) -> tuple[Fact, ...]:
-    """Make the facts of thickness, deviation, nominal value and limits, and of the faces; the verdict is the part's."""
+    """Make the facts on a thickness: value, deviation, nominal value, limits and both faces."""
     *thickness, _verdict = characteristic_facts(thickness_characteristic(gauge))
     return (
         *thickness,
@@ -29,14 +29,14 @@ def gauge_facts(gauge: GaugeResult) -> tuple[Fact, ...]:
 
 
 def angle_fact(gauge: GaugeResult) -> Fact:
-    """Make the fact of the angle between the faces."""
+    """Make the fact on the angle between the upper and the lower face."""
     about = label("Angle between the two faces when each is fitted by itself")
     angle = None if gauge.parallelism is None else math.degrees(gauge.parallelism)
     return Fact(label("angle of the faces"), angle, "°", 3, about, Reader.AUDITOR)
 
 
 def face_facts(face: Face) -> tuple[Fact, ...]:
-    """Make the facts of a face: its flatness, and the points of its plane."""
+    """Make the facts on a face: its flatness, and how many points its plane rests on."""
     about = label("Width of the zone that holds the face's form, free of its points' noise, and its U (k = 2)")
     U = None if face.flatness_u_mm is None else 2 * face.flatness_u_mm
     return (
@@ -56,12 +56,12 @@ class PictureStep(Picture, Protocol):
 
 
 def pictures_fact(pictures: Sequence[PictureStep]) -> Fact:
-    """Make the fact of how many pictures of the fan alone gave a step."""
+    """Make the fact on how many pictures of the fan alone, without a sweep, gave a step height."""
     return used_fact(label("pictures"), pictures, label("Pictures that gave a thickness, and all there are"))
 
 
 def pictures_table(pictures: Sequence[PictureStep]) -> FactTable:
-    """Make the table of the steps of all pictures of the fan alone that gave one."""
+    """Make the table of the step heights from pictures of the fan alone, one row for each picture that gave one."""
     own = label("Standard uncertainty that is the picture's own (k = 1)")
     columns = (Column(label("picture")), Column(label("thickness"), "mm"), Column(label("own u"), "mm", tip=own))
     rows = (

@@ -38,13 +38,13 @@ class KeptCalibration(Protocol):
 
 
 def stored_cameras(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
-    """Make the table of stored cameras; `in_use` is the id of one of them or ""."""
+    """Make the table of stored camera calibrations; the one with the id `in_use` is marked ("" for none)."""
     columns = (_ACCEPTED, Column(CORNERS, "px", 3), Column(label("views")), _ID, _STATE)
     return FactTable(columns, tuple((*_about(one, one.rms_px), plain(one.id), _state(one, in_use)) for one in kept))
 
 
 def stored_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
-    """Make the table of stored light planes, each with the camera it rests on."""
+    """Make the table of stored light-plane calibrations, each with its camera; the one with id `in_use` is marked."""
     lines = range(max((len(one.rms_mm) for one in kept), default=0))
     of_lines = (Column(Message("told.rms_of_line", "RMS of line {number}", number=n + 1), "mm", 3) for n in lines)
     columns = (_ACCEPTED, *of_lines, Column(label("poses")), _ID, Column(label("camera")), _STATE)
@@ -61,9 +61,9 @@ def stored_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
 
 
 def change_cells(changes: CameraChanges) -> tuple[tuple[Fact, ...], ...]:
-    """Make the cells of both values of each parameter, the change and its standard deviation.
+    """Make the table rows that compare two camera calibrations: both values, the change and its standard deviation.
 
-    Of views both values alone.
+    Of the number of views both values alone.
     """
     rows: list[tuple[Fact, ...]] = [
         tuple(Fact(CORNERS, value, "px", 3) for value in changes.rms_px),

@@ -19,13 +19,13 @@ _HELD = 1e-9
 
 
 def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
-    """Make the facts of the light planes: how well the stripes fit them, the planes, and all others."""
+    """Make the facts on the fan's calibration: each plane's fit, normal, distance and angle, then all together."""
     lines = (named(line_name(n), cells) for n, cells in enumerate(plane_cells(calibration), start=1))
     return (*chain(*lines), *rest_of_planes(calibration))
 
 
 def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
-    """Make the facts of all planes together."""
+    """Make the facts on the fan's calibration as a whole: poses used, and how well the planes form one pencil."""
     facts = [used_fact(label("poses"), calibration.poses, label("Poses used, and all there are"), POSES)]
     if math.isfinite(calibration.pencil_gap_mm):
         tip = label("Largest distance of the free planes from those of one pencil, within the work volume")
@@ -50,12 +50,12 @@ def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
 
 
 def line_name(number: int) -> Message:
-    """Return the name of a line of the fan and its light plane."""
+    """Return the name of the fan's laser line number `number`, from 1, and of its light plane."""
     return Message("told.line", "line {number}", number=number)
 
 
 def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
-    """Make the cells of each light plane: fit, normal and distance, and the angle to the next plane, if any."""
+    """Make the table rows of the light planes, one each: fit, normal, distance, and the angle to the next plane."""
     about = label("Root mean square distance of the points on this line from its plane")
     held = label("Angle between neighbouring planes that are held to one pencil")
     free = label("The same where each plane is calibrated on its own (± standard deviation)")
@@ -100,16 +100,16 @@ def _angle_digits(sd: float) -> int | None:
 
 
 def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:
-    """Make the sentences on whether the laser is the stated pencil, and on what a check has moved."""
+    """Make the sentences on whether the planes form the stated pencil, and on a re-adjustment if there was one."""
     verdict = calibration.verdict
     moved = () if calibration.readjusted is None else (calibration.readjusted.note,)
     return (*(() if verdict is None else (Message("told.sentence", "{what:capital}.", what=verdict),)), *moved)
 
 
 def sentence_on_pose(pose: PlanePose) -> Message:
-    """Make the sentence of how well a pose fits and how many lines it shows.
+    """Make the sentence on how well a pose of the plane target fits, and how many laser lines are seen in it.
 
-    Or why it is left out and how far off it is.
+    Of a pose that is left out: why, and how far off it is.
     """
     if pose.used:
         return plural_message(

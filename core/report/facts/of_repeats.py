@@ -16,7 +16,7 @@ LEAST_DIGITS = 3
 def repeat_facts(
     statistics: RepeatStatistics, unit: str = "mm", nominal: float | None = None, digits: int = LEAST_DIGITS
 ) -> list[Fact]:
-    """Mean, bias, standard deviation, largest error and RMSE of repeats, all in `unit`, with `digits` or more."""
+    """Make the facts on repeats: mean, bias, standard deviation, largest error, RMSE in `unit` to `digits` or more."""
     digits = max(decimals_of(statistics.std_mm), digits)
     several = math.isfinite(statistics.std_mm)
     about_bias, about_rmse = label("Mean less the nominal value"), label("Root mean square of the single errors")

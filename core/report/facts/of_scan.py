@@ -23,7 +23,7 @@ def scan_facts(
     share: float | None = None,
     extent_mm: Array | None = None,
 ) -> tuple[Fact, ...]:
-    """Make the facts of the quality of a scan; None means not known.
+    """Make the facts on the quality of a scan: points, frames used, triangles, σ, coverage, extent; None: not known.
 
     `sigma_mm` are the median and the 95 % quantile of its points' σ, `share` (0 … 1) what there is of what was lit, and
     `extent_mm` (3,) how large it is along x, y and z.
@@ -63,7 +63,7 @@ def scan_facts(
 
 
 def sigma_of(sigma: Array) -> tuple[float, float] | None:
-    """Compute median and 95 % quantile of σ (N,); None where no σ is known."""
+    """Compute the median and the 95 % quantile of the points' σ (N,) in mm; None if no σ is known."""
     known = sigma[np.isfinite(sigma)]
     if not len(known):
         return None

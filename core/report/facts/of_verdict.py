@@ -15,10 +15,10 @@ NO_LIMIT = label("none: no limit was given")
 
 
 def verdict_fact(verdict: str) -> Fact:
-    """What was decided, on a part or by a study."""
+    """Make the fact on the verdict on a part or of a study; if `verdict` is "", it says that no limit was given."""
     return Fact(VERDICT, decision(verdict) or NO_LIMIT, grade=_GRADES.get(verdict, ""))
 
 
 def decision(verdict: str) -> str:
-    """The words of a decision; "" where none was made."""
+    """Return the words for a verdict; "" if `verdict` is ""."""
     return DECISIONS[verdict] if verdict else ""

@@ -23,15 +23,15 @@ class Picture(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of the picture."""
+        """Name of the picture: of a view, a pose or a frame."""
 
     @property
     def used(self) -> bool:
-        """Whether the picture counts."""
+        """Whether the picture is used in the result."""
 
     @property
     def reason(self) -> Message | None:
-        """Reason why it was left out; None if it was not, or none is known."""
+        """Reason why the picture was left out; None if it is used, or if no reason is known."""
 
 
 class LeftOut(NamedTuple):
@@ -41,7 +41,7 @@ class LeftOut(NamedTuple):
     names: list[str]
 
     def line(self, most: int = NAMES_SHOWN) -> Message:
-        """Write how many pictures, why, and which: at most so many names."""
+        """Make the message of how many pictures were left out, why, and which: at most `most` names."""
         shown = [name.rpartition("/")[2] for name in self.names[:most]]
         names = (*shown, *(["…"] if len(self.names) > most else []))
         return Message(
@@ -51,7 +51,7 @@ class LeftOut(NamedTuple):
 
 
 def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
-    """Group the pictures left out by their reason, the commonest first."""
+    """Group the pictures that were left out by their reason, the most frequent reason first."""
     reasons: dict[Message, list[str]] = {}
     for picture in pictures:
         if not picture.used:
@@ -60,7 +60,7 @@ def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
 
 
 def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | None = None) -> Fact:
-    """Make the fact of how many pictures are used, and whether they are enough."""
+    """Make the fact on how many of the pictures are used, graded by `limit` if one is given."""
     used = sum(picture.used for picture in pictures)
     value = Message("told.used", "{used:,} of {all:,}", used=used, all=len(pictures))
     if limit is None:
@@ -69,12 +69,12 @@ def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | N
 
 
 def grade(limit: Limit, value: float) -> Grade:
-    """Grade a value by the limit of a calibration."""
+    """Grade a value by a limit of the calibrations: "good", "warn" or "bad"."""
     return _GRADES[limit.grade(value)]
 
 
 def limits_tip(tip: str, good: float, poor: float, unit: str = "") -> Message:
-    """Make the tip of what a value means, from where on it is good and below which it is poor."""
+    """Make the tooltip of a value: `tip`, then from which value on it is good and below which it is poor."""
     return Message(
         "told.limits", "{what}. Good from {good:.0f}{unit} on, poor below {poor:.0f}{unit}",
         what=tip, good=good, poor=poor, unit=unit,

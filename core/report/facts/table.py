@@ -39,7 +39,7 @@ class Column:
     signed: bool = False
 
     def fact(self, cell: Cell) -> Fact:
-        """Make the fact of one of its values."""
+        """Make the fact for one cell of this column, with the column's name, unit and digits."""
         value, digits = (cell.value, decimals_of(cell.sd)) if isinstance(cell, Uncertain) else (cell, self.digits)
         return Fact(
             self.label, value, self.unit, digits, self.tip, self.level,
@@ -69,13 +69,13 @@ class FactTable:
     level: Reader = Reader.TECHNICIAN
 
     def for_reader(self, reader: Reader) -> FactTable:
-        """Select the columns that are for a reader."""
+        """Return the table with those columns only that are meant for the reader."""
         places = [place for place, column in enumerate(self.columns) if column.level <= reader]
         rows = tuple(tuple(row[place] for place in places) for row in self.rows)
         return replace(self, columns=tuple(self.columns[place] for place in places), rows=rows)
 
     def texts(self, words: Words) -> list[list[str]]:
-        """Write the cells of each row without their units, which are in the heads; "" where there is no value."""
+        """Write all cells of the table, row by row, without units; "" for a cell without a value."""
         return [
             [
                 "" if value is None else replace(column.fact(value), unit="").text(words)
@@ -85,11 +85,11 @@ class FactTable:
         ]
 
     def lines(self, words: Words) -> list[tuple[str, str]]:
-        """Write each row in one line: its name, and its values with their names, 'σ 0.306 mm, of T 22.7 %'."""
+        """Write each row as a line: its name, and its values with their names, 'σ 0.306 mm, of T 22.7 %'."""
         return [(self._name(row, words), words.joined(self._said(row, words))) for row in self.rows]
 
     def facts(self, words: Words) -> tuple[Fact, ...]:
-        """Make a fact of each value, named by its row and its column: 'gauge R&R: σ'."""
+        """Convert each cell with a value to a fact named by its row and column: 'gauge R&R: σ'."""
         return tuple(
             replace(
                 column.fact(value),
@@ -117,5 +117,5 @@ class FactTable:
 
 
 def tables_for_reader(tables: Iterable[FactTable], reader: Reader) -> tuple[FactTable, ...]:
-    """Select the tables that are for a reader, with their columns for this reader."""
+    """Select the tables meant for a reader, each with the columns meant for that reader."""
     return tuple(table.for_reader(reader) for table in tables if table.level <= reader)

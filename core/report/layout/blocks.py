@@ -49,12 +49,12 @@ class Picture(Flowable):  # type: ignore[misc]
 
     @property
     def spare(self) -> float:
-        """Height in points by which the picture can shrink."""
+        """Height in points by which the picture may still shrink."""
         spare: float = self.height * (1 - LEAST_SCALE * TEXT_WIDTH / self.inner)
         return max(0.0, spare)
 
     def shrink(self, points: float) -> None:
-        """Reduce the height by so many points, in proportion."""
+        """Reduce the picture's height by `points` (1/72 inch), and its width in proportion."""
         share = 1 - points / self.height
         self.inner, self.height = self.inner * share, self.height * share
 
@@ -74,11 +74,11 @@ class Bookmark(Flowable):  # type: ignore[misc]
         self.key, self.title, self.level = key, title, level
 
     def wrap(self, *_: float) -> tuple[float, float]:
-        """Take no room (called by reportlab)."""
+        """Return the size (0, 0), as a bookmark takes no room (called by reportlab)."""
         return 0, 0
 
     def draw(self) -> None:
-        """Register the place (called by reportlab)."""
+        """Register the bookmark at the current place of the page (called by reportlab)."""
         self.canv.bookmarkHorizontal(self.key, 0, 12)
         self.canv.addOutlineEntry(self.title, self.key, self.level)
 
@@ -91,11 +91,11 @@ class Heading(Paragraph):
         self.key, self.title, self.level = key, title, level
 
     def split(self, *_: float) -> list[Flowable]:
-        """Stay in one piece (called by reportlab)."""
+        """Return no parts, so that the heading is never divided between pages (called by reportlab)."""
         return []
 
     def draw(self) -> None:
-        """Register the place and paint it (called by reportlab)."""
+        """Register the heading's bookmark and paint the heading (called by reportlab)."""
         self.canv.bookmarkHorizontal(self.key, 0, self.height)
         self.canv.addOutlineEntry(self.title, self.key, self.level)
         super().draw()
@@ -105,7 +105,7 @@ class OnOnePage(KeepTogether):  # type: ignore[misc]
     """Flowables kept together; their pictures shrink where that keeps them on a page that is begun already."""
 
     def least_height(self, width: float) -> float:
-        """Compute the least height in points."""
+        """Compute the least height in points of all flowables together, with their pictures shrunk."""
         self.wrap(width, 0)
         height: float = self._H - self._spare
         return height
@@ -119,7 +119,7 @@ class OnOnePage(KeepTogether):  # type: ignore[misc]
         return sum(one.spare for one in self._pictures)
 
     def split(self, width: float, height: float) -> list[Flowable]:
-        """Begin a page only if smaller pictures are not enough (called by reportlab)."""
+        """Shrink pictures if all then fits into `height` points, else begin a new page (called by reportlab)."""
         self.wrap(width, height)
         spare, lack = self._spare, self._H - height
         if not 0 < lack < spare:
@@ -139,7 +139,7 @@ class Sections(KeepTogether):  # type: ignore[misc]
         self.sections = list(sections)
 
     def split(self, width: float, height: float) -> list[Flowable]:
-        """Place the first one that fits, if need be on a new page, and then the rest (called by reportlab)."""
+        """Place the first section that fits into `height` points, then the rest in order (called by reportlab)."""
         for one in self.sections:
             one.canv, one._frame = self.canv, getattr(self, "_frame", None)
         fitting = (one for one in self.sections if one.least_height(width) <= height)
@@ -149,7 +149,7 @@ class Sections(KeepTogether):  # type: ignore[misc]
 
 
 def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> OnOnePage:
-    """Make a heading that stays with what follows it; `heading` is fixed words, `key` is the target of links."""
+    """Make a section whose heading, fixed words with `values`, stays with its content; `key` is the target of links."""
     title = look.words(heading, **values)
     return OnOnePage([Heading(look, key, title), *first])
 
@@ -171,12 +171,12 @@ Cell: TypeAlias = "Flowable | list[Flowable] | str"
 
 
 def plain_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Table:
-    """Make a table without any rule."""
+    """Make a table without lines; column widths in points."""
     return Table(rows, colWidths=widths, style=TableStyle(PLAIN), hAlign="LEFT")
 
 
 def ruled_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Table:
-    """Make a table with a rule under the head row and a hairline below each further row."""
+    """Make a table with a line under the head row and a hairline under each other row; column widths in points."""
     style = [
         *PLAIN,
         ("LINEBELOW", (0, 0), (-1, 0), 0.6, color(MUTED)),
@@ -186,7 +186,7 @@ def ruled_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Tabl
 
 
 def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Flowable]:
-    """Make a head row of fixed words ("" for none); those at `numbers` are aligned to the right."""
+    """Make a table's head row from fixed words ("" for an empty head); those at indices `numbers` are right-aligned."""
     return [
         look.text("" if not word else look.words(word), "head_number" if place in numbers else "head")
         for place, word in enumerate(words)
@@ -194,14 +194,14 @@ def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Fl
 
 
 def pairs_table(look: ReportLook, pairs: Mapping[str, str], width: float, label_width: float) -> Table:
-    """Make a table of label and value, one pair a row."""
+    """Make a table of two columns, label and value, from `pairs`; widths in points."""
     rows = [[look.text(label, "label"), look.text(value, "small")] for label, value in pairs.items()]
     nothing = [[look.fixed_text("none", "small"), look.text("", "small")]]
     return plain_table(rows or nothing, [label_width, width - label_width])
 
 
 def side_by_side(left: list[Flowable], right: list[Flowable], width: float, share: float = 0.5) -> Table:
-    """Make two columns with a gap between them; `share` of the rest is the left one's."""
+    """Make two columns with a gap between them; `share` is the left column's part of `width` without the gap."""
     inner = (width - GAP) * share
     style = TableStyle([*PLAIN, ("RIGHTPADDING", (0, 0), (-1, -1), 0), ("TOPPADDING", (0, 0), (-1, -1), 0)])
     return Table(
@@ -225,14 +225,14 @@ class ShareBar(Flowable):  # type: ignore[misc]
 
 
 def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flowable]:
-    """Make the line 'and 12 more, listed in run.json', or nothing; `where` in fixed words or the name of a file."""
+    """Make the line 'and 12 more, listed in run.json' for `left` entries that are not printed; [] if `left` is 0."""
     if left <= 0:
         return []
     return [look.fixed_text("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
 
 
 def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:
-    """Make the table of values for an auditor, with units below their names, so many a row."""
+    """Make a table of facts for an auditor, each a name above its value with unit, `columns` of them in a row."""
     words, told = look.words, for_reader(facts, Reader.AUDITOR)
     rows: list[list[Cell]] = []
     for start in range(0, len(told), columns):
@@ -244,7 +244,7 @@ def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:
 
 
 def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Flowable]:
-    """Make the tables of a result for an auditor."""
+    """Make the printed tables, with space around each, of the `FactTable`s meant for an auditor."""
     read = tables_for_reader(tables, Reader.AUDITOR)
     return [part for table in read for part in (Spacer(0, 1 * mm), _fact_table(look, table), Spacer(0, 1 * mm))]
 
@@ -269,5 +269,5 @@ def _fact_table(look: ReportLook, table: FactTable) -> Table:
 
 
 def texts_by_name(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
-    """Write the facts of a result for an auditor: value with unit, by its name."""
+    """Write the facts meant for an auditor as texts: the value with its unit, by the fact's name."""
     return {fact.heading(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}

@@ -28,7 +28,7 @@ RESTRICTED, NO_SUBSET = 0x0002, 0x0300
 
 
 def converted_font(name: str, path: str) -> ttfonts.TTFont:
-    """Convert a font for reportlab under this name.
+    """Convert the font file at `path`, with PostScript outlines, to a TrueType font for reportlab called `name`.
 
     Raises
     ------

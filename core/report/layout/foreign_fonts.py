@@ -32,7 +32,7 @@ _HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-
 
 
 def system_fonts() -> Sequence[tuple[str, str]]:
-    """List (family, path) of the fonts of this computer, those of many scripts first, of a family the regular one."""
+    """List the fonts of this computer as (family, path), one a family, those that cover many scripts first."""
     own = str(Path(matplotlib.get_data_path()))
     found = {
         (
@@ -51,7 +51,7 @@ def system_fonts() -> Sequence[tuple[str, str]]:
 
 
 def truetype(name: str, path: str) -> TTFont:
-    """Load a font for reportlab, with the advances that the file has.
+    """Load a TrueType font for reportlab under `name`, with glyph widths as in the file at `path`.
 
     reportlab takes the advance that the last glyphs of a font share in thousandths of an em, and writes it as if it
     were in the font's own units: a monospaced font would be embedded with widths that are not its own.
@@ -65,7 +65,7 @@ def truetype(name: str, path: str) -> TTFont:
 
 @cache
 def drawn_family(character: str) -> str:
-    """Find the family for matplotlib of a font of this computer that has `character`, or "".
+    """Find a font family of this computer that has `character`, for matplotlib; "" if there is none.
 
     A plot is a picture: it takes fonts that may not be embedded as well.
     """
@@ -74,7 +74,7 @@ def drawn_family(character: str) -> str:
 
 @cache
 def embedded_font(character: str) -> str:
-    """Find the name for reportlab of a font of this computer that has `character` and can be embedded, or ""."""
+    """Find a font of this computer that has `character` and may be embedded; return its reportlab name, or ""."""
     for _, path in _having(character):
         name = f"Foreign-{Path(path).stem}"
         if name in pdfmetrics.getRegisteredFontNames():
@@ -119,13 +119,13 @@ def _having(character: str) -> Iterator[tuple[str, str]]:
 
 @cache
 def named_font(name: str) -> str:
-    """Register one of Adobe's East Asian fonts: not embedded, the reader's program brings it."""
+    """Register one of Adobe's East Asian fonts, which is not embedded in the PDF; return its name."""
     pdfmetrics.registerFont(UnicodeCIDFont(name))
     return name
 
 
 def east_asian_font(text: str) -> str:
-    """Choose the named font for the East Asian characters of `text`."""
+    """Choose the Adobe font (not embedded) that suits the East Asian characters of `text`."""
     if any(0xAC00 <= ord(c) <= 0xD7A3 or 0x1100 <= ord(c) <= 0x11FF for c in text):
         return named_font(_HANGUL)
     if any(0x3040 <= ord(c) <= 0x30FF for c in text):
@@ -134,7 +134,7 @@ def east_asian_font(text: str) -> str:
 
 
 def is_east_asian(character: str) -> bool:
-    """Whether a named font has the character."""
+    """Whether one of Adobe's East Asian fonts, which are not embedded, has the character."""
     point = ord(character)
     return (
         0x1100 <= point <= 0x11FF

@@ -12,7 +12,7 @@ Pages = tuple[NDArray[np.uint8], ...]
 
 
 def page_pictures(pdf: bytes, width_px: int = 900, progress: Progress = silent) -> Pages:
-    """Draw every page of a PDF `width_px` wide.
+    """Draw every page of a PDF as a picture `width_px` wide.
 
     Raises
     ------

@@ -57,7 +57,7 @@ class Paragraph(platypus.Paragraph):  # type: ignore[misc]
 
 
 def line_ends(characters: Sequence[Any], widths: Sequence[float]) -> list[int]:
-    """Find where lines end, each place that of the next line's first character.
+    """Find where to break a text into lines: the index of the first character of each next line.
 
     A line is as long as it fits between two places where it may break; what has none is cut where the line is full.
     Spaces at an end stand beyond it.
@@ -90,7 +90,7 @@ def line_ends(characters: Sequence[Any], widths: Sequence[float]) -> list[int]:
 
 
 def may_break(before: str, after: str) -> bool:
-    """Whether a line may end between two characters."""
+    """Whether a line may be broken between the characters `before` and `after`."""
     if not before or not after or after in NOT_FIRST or before in NOT_LAST or "\u00a0" in (before, after):
         return False
     if before in BREAK_AFTER:

@@ -62,7 +62,7 @@ _FILES = {
 
 
 def color(value: str) -> HexColor:
-    """Make the colour of a hex string."""
+    """Convert a colour as hex text, '#rrggbb', to a colour for reportlab."""
     return HexColor(value)
 
 
@@ -82,18 +82,18 @@ def _covered() -> frozenset[int]:
 
 
 def has_character(character: str) -> bool:
-    """Whether the report's own fonts have the character, or it is a space of some kind."""
+    """Whether one of the report's embedded fonts has the character; true for any kind of space."""
     return ord(character) in _covered() or character.isspace()
 
 
 def prepare_reportlab() -> None:
-    """Register the embedded fonts with reportlab, and let it write binary streams; further calls change nothing."""
+    """Register the report's fonts with reportlab and set its options; further calls change nothing."""
     _covered()
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
 def markup(text: str) -> str:
-    """Write `text` as markup of a Paragraph, complete in any script, with no break between a number and its unit.
+    """Convert `text` to reportlab's markup: escaped, in fonts that have its characters, numbers kept with their units.
 
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
     reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
@@ -116,12 +116,12 @@ def _runs(text: str) -> list[tuple[str, str]]:
 
 
 def words_width(text: str, font: str, size: float) -> float:
-    """Compute the width in points in which `draw_words` writes `text`."""
+    """Compute the width in points of `text` in the font `font` of `size` points, in any script."""
     return float(sum(pdfmetrics.stringWidth(part, foreign or font, size) for foreign, part in _runs(text)))
 
 
 def draw_words(canvas: Any, place: tuple[float, float], text: str, font: str, size: float, share: float = 0.0) -> None:
-    """Write `text` on the page, in any script; `share` of its width is left of `place` (x, y), in points."""
+    """Draw `text` on the page at `place` (x, y) in points; `share` (0 … 1) of its width lies left of x."""
     x, y = place[0] - share * words_width(text, font, size), place[1]
     for foreign, part in _runs(text):
         canvas.setFont(foreign or font, size)
@@ -135,7 +135,7 @@ def _foreign(character: str, text: str) -> str:
 
 
 def font_note(texts: Iterable[str]) -> Message | None:
-    """Note that some characters in `texts` are not embedded, or have no font at all; None if all have."""
+    """Make the note that some characters in `texts` are not embedded or not printable; None if all are embedded."""
     foreign = {character for text in texts for character in text if not has_character(character)}
     lacking = {character for character in foreign if not embedded_font(character)}
     if not lacking:
@@ -159,7 +159,7 @@ EAST_ASIAN = ("zh", "ja", "ko")
 
 @cache
 def styles_of(accent: str, *, east_asian: bool = False) -> Mapping[str, ParagraphStyle]:
-    """Make every type style of the report, by name; headings in `accent`.
+    """Make the report's paragraph styles, by name; headings have the colour `accent`.
 
     `east_asian` lines do not begin with a stop.
     """
@@ -211,26 +211,26 @@ class ReportLook:
 
     @property
     def accent_color(self) -> HexColor:
-        """Accent colour."""
+        """Accent colour of the report, for reportlab."""
         return color(self.accent)
 
     def style(self, name: str) -> ParagraphStyle:
-        """Return a type style by its name."""
+        """Return the paragraph style called `name`."""
         return styles_of(self.accent, east_asian=self.words.language.name.startswith(EAST_ASIAN))[name]
 
     def text(self, plain: str, style: str = "body") -> Paragraph:
-        """Make a paragraph of plain words, never taken for markup."""
+        """Make a paragraph of plain text, in which no markup is recognised."""
         return Paragraph(self.markup(plain), self.style(style))
 
     def markup(self, plain: str) -> str:
-        """Write plain words as markup of a Paragraph; beyond MOST_CHARACTERS they are shortened, visibly."""
+        """Convert plain text to reportlab's markup, shortened with a remark beyond MOST_CHARACTERS characters."""
         if len(plain) > MOST_CHARACTERS:
             said = self.words("(shortened from {n} characters; all of it is in run.json)", n=len(plain))
             plain = f"{plain[:MOST_CHARACTERS]}… {said}"
         return markup(plain)
 
     def lines(self, plain: str) -> list[Paragraph]:
-        """Make paragraphs of plain words that may be long and may have line ends; an empty line is a gap."""
+        """Make small paragraphs of a long plain text, one for each line; shortened beyond MOST_REMARKS characters."""
         if len(plain) > MOST_REMARKS:
             said = self.words("(shortened from {n} characters)", n=len(plain))
             plain = f"{plain[:MOST_REMARKS]}…\n{said}"
@@ -242,13 +242,13 @@ class ReportLook:
         return [Paragraph(markup(piece) or "\u00a0", self.style("small")) for piece in pieces]
 
     def fixed_text(self, english: str, style: str = "body", /, **values: object) -> Paragraph:
-        """Make a paragraph of fixed words in the report's language."""
+        """Make a paragraph of fixed words, translated to the report's language, with `values` in their places."""
         return self.text(self.words(english, **values), style)
 
     def link(self, plain: str, key: str, style: str = "body") -> Paragraph:
-        """Make a paragraph of plain words that links to the section or row called `key`."""
+        """Make a paragraph of plain text that links to the section or row whose link key is `key`."""
         return Paragraph(f'<a href="#{key}" color="{self.accent}">{self.markup(plain)}</a>', self.style(style))
 
     def bullets(self, sentences: tuple[str, ...], style: str = "bullet") -> list[Paragraph]:
-        """Make a paragraph of each sentence behind a small bullet; "alarm": in the colour of what is grave."""
+        """Make a bulleted paragraph of each sentence in the paragraph style `style`, as "bullet" or "alarm"."""
         return [Paragraph(self.markup(sentence), self.style(style), bulletText="•") for sentence in sentences]

@@ -63,7 +63,7 @@ CALLOUT_INSET = 0.006
 
 
 def height_map(accent: str) -> LinearSegmentedColormap:
-    """Make the colour map from pale to the accent: the shading shows the form, the colour the height."""
+    """Make the colour map for heights, from a pale colour to `accent`."""
     return LinearSegmentedColormap.from_list("height", ["#DDE2E5", mixed(accent, 0.5), accent])
 
 
@@ -96,7 +96,7 @@ def surface_figure(
 def view_figure(
     look: ReportLook, content: ReportContent, view: SeenFrom, size: tuple[float, float], progress: Progress = silent
 ) -> Figure:
-    """Draw the surface as it was left in 3D, coloured as in `surface_figure`, in a figure of `size` in mm.
+    """Draw the surface in the view that the user chose in 3D, coloured by height, in a figure of `size` in mm.
 
     What was hidden then is left out. A result's words are there if its place is in sight.
     """
@@ -199,7 +199,7 @@ class Callout(NamedTuple):
 
 
 def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
-    """Make a callout of the worst characteristic of each feature, value ± U and verdict, at a point in its middle."""
+    """Make the callouts of the surface's figure: the worst characteristic of each feature, with U and verdict."""
     made = []
     for one, indices in content.shown_at:
         points = content.cloud.points[indices]
@@ -235,7 +235,7 @@ def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground, viewpoi
 
 
 def residual_figure(look: ReportLook, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
-    """Draw the residuals of both faces, mean per cell, in mm; one colour scale, and their distribution."""
+    """Draw the mean residuals in mm over both faces of a thickness in one colour scale, and a histogram of them."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         spread = np.concatenate([gauge.upper.residuals, gauge.lower.residuals])
@@ -289,7 +289,7 @@ def _spread_panel(look: ReportLook, axes: Axes, gauge: GaugeResult, limit: float
 def cloud_figure(
     look: ReportLook, cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float
 ) -> Figure:
-    """Draw depth and its standard uncertainty over the picture, mean per cell, for a scan without a gauge."""
+    """Draw two maps over the camera's picture: the depth of the points, and its standard uncertainty σ, in mm."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         panels = (
@@ -333,7 +333,7 @@ def points_figure(
     height_mm: float,
     pairs: Sequence[PairCandidate] = (),
 ) -> Figure:
-    """Draw the pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour.
+    """Draw which points were used: all points grey, those of each face or feature in `points` coloured, in pixels.
 
     Of several `pairs` of faces that could be meant, the measured one is outlined, and dashed the next best.
     """
@@ -388,7 +388,7 @@ MARKS_ACROSS = 14
 
 
 def deviation_figure(look: ReportLook, one: Deviations, width_mm: float, height_mm: float) -> Figure:
-    """Draw the mean deviation per cell in the camera's view, with a mark for its class, and the distribution."""
+    """Draw the map of mean deviations from a nominal surface in the camera's view, and a histogram of them."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         axes = figure.add_axes((11 / width_mm, 10 / height_mm, 96 / width_mm, 1 - 12 / height_mm))

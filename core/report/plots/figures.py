@@ -57,36 +57,36 @@ RC: dict[Any, Any] = {
 
 
 def plot_style() -> AbstractContextManager[None]:
-    """Set the style of the report's plots, for the time of a `with`."""
+    """Apply the style of the report's plots within a `with` block."""
     return matplotlib.style.context(["default", RC])
 
 
 def drawable(text: str) -> str:
-    """Replace by a question mark what neither the report's font nor one of this computer can draw in a plot."""
+    """Replace each character of `text` that no font for plots has by a question mark."""
     return "".join(character if has_character(character) or drawn_family(character) else "?" for character in text)
 
 
 def families(text: str) -> list[str]:
-    """List families of fonts that have all of a `drawable` text, the report's own first."""
+    """List the font families that are needed to draw `text` in a plot, the report's own first."""
     foreign = dict.fromkeys(drawn_family(character) for character in text if not has_character(character))
     return [FAMILY, *(family for family in foreign if family)]
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
-    """Make an empty figure of this size on paper."""
+    """Make an empty figure of the given width and height on paper, in mm."""
     figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def mixed(accent: str, share: float) -> str:
-    """Mix the hex colour `share` of the way from white to `accent`."""
+    """Mix white with the hex colour `accent`: `share` 0 gives white, 1 gives `accent`."""
     red, green, blue = (1 - share * (1 - part) for part in to_rgb(accent))
     return to_hex((red, green, blue))
 
 
 def pixels(figure: Figure, decimal: str = ".") -> NDArray[np.uint8]:
-    """Draw the figure as (H, W, 3) uint8, its axes numbered with this decimal sign.
+    """Render the figure to RGB pixels (H, W, 3) uint8; `decimal` is the decimal sign of the numbers on its axes.
 
     Raises
     ------
@@ -138,14 +138,14 @@ class _Renumbered(Formatter):
 
 
 def color_scale(colormap: str | Colormap, low: float, high: float) -> ScalarMappable:
-    """Map values from `low` to `high` to colours."""
+    """Make a colour scale of values from `low` to `high`."""
     return ScalarMappable(Normalize(low, high), colormap)
 
 
 def add_color_bar(
     figure: Figure, box: tuple[float, float, float, float], colors: ScalarMappable, label: str, extend: str = "neither"
 ) -> None:
-    """Add a colour bar in `box` (left, bottom, width, height as shares of the figure), its label above it.
+    """Add a colour bar in `box` (left, bottom, width, height as shares of the figure), with its label above it.
 
     `extend` ("neither", "max", "both") says at which ends values beyond the scale were cut to it.
     """
@@ -160,7 +160,7 @@ _CELLS = 110  # of a map along its longer side, at most
 
 
 def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappable) -> None:
-    """Paint the mean of `values` (N,) per square cell at `positions` (N, 2) growing right and up.
+    """Paint the mean of `values` (N,) in each square cell of a grid; `positions` (N, 2) are to the right and up.
 
     Empty cells stay blank.
     """
@@ -180,7 +180,7 @@ def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappabl
 
 
 def round_up(value: float) -> float:
-    """Round up to 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten; 1 for what is not a positive number."""
+    """Round a positive number up to 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten; 1 for any other value."""
     if not np.isfinite(value) or value <= 0:
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

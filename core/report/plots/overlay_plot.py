@@ -23,7 +23,7 @@ FAN_COLOR, SWEEP_MAP, UNKNOWN = "#E06C00", "viridis", "#737373"
 
 
 def overlay_figure(look: ReportLook, overlay: Overlay, width_mm: float, height_mm: float) -> Figure:
-    """Draw one frame with the fan's centrelines, the sweep's one coloured by σ of depth, and the crossings used."""
+    """Draw one frame with the fan's centrelines, the sweep's centreline coloured by σ, and the crossings used."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         rows, columns = overlay.picture.shape

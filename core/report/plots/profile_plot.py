@@ -25,7 +25,7 @@ _MOST_MARKS = 120
 
 
 def profiles_figure(look: ReportLook, profiles: LightProfiles, width_mm: float, height_mm: float) -> Figure:
-    """Draw heights over the lower face along the lines of one picture, and each picture's thickness with ±2u."""
+    """Draw the light profiles of one picture over the lower face, and the thickness of each picture with ±2u, in mm."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         foot, height = _FOOT_MM / height_mm, (height_mm - _FOOT_MM - _HEAD_MM) / height_mm
@@ -39,7 +39,7 @@ def profiles_figure(look: ReportLook, profiles: LightProfiles, width_mm: float, 
 
 
 def section_figure(look: ReportLook, profile: Array, width_mm: float, height_mm: float) -> Figure:
-    """Draw a cross-section: height over position, `profile` (M, 2) in mm, M ≥ 1; to one scale unless it is flat."""
+    """Draw a cross-section: heights over positions, `profile` (M, 2) in mm, M ≥ 1; to one scale unless it is flat."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         room = (width_mm - _LEFT_MM - _DIMENSION_MM, height_mm - _FOOT_MM - _DIMENSION_MM)

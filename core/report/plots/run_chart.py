@@ -31,7 +31,7 @@ def repeats_figure(
     width_mm: float,
     height_mm: float,
 ) -> Figure:
-    """Draw the thickness of each of `repeats` with ±U over its number, their mean, the nominal value and tolerance."""
+    """Draw a run chart of thicknesses of `repeats` with ±U, their mean, the nominal value and tolerance, in mm."""
     values = [repeat.thickness_mm for repeat in repeats]
     lines = {label("mean"): float(np.mean(values))}
     if nominal_mm is not None:
@@ -51,9 +51,9 @@ def run_chart_figure(
     width_mm: float,
     height_mm: float,
 ) -> Figure:
-    """Draw values with ±U (nothing for none) over their number, and a histogram if they are enough for one.
+    """Draw a run chart of `values` with ±U, horizontal `lines` by their names, and a histogram if there are enough.
 
-    `lines` by the fixed words they are called.
+    The names of `lines` are fixed words.
     """
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -96,7 +96,7 @@ def _histogram(look: ReportLook, axes: Axes, values: Sequence[float]) -> Axes:
 
 
 def draw_lines(look: ReportLook, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
-    """The lines to compare with, across all axes, and their words behind the last ones."""
+    """Draw labelled horizontal lines across `axes` and `last`, the label of each to the right of `last`."""
     tones = [look.accent] + [MUTED] * len(lines)
     for value, form, tone in zip(lines.values(), ("-", *FORMS), tones, strict=False):
         for one in dict.fromkeys((axes, last)):

@@ -29,7 +29,7 @@ LAMP = np.array([-0.45, 0.75, 0.65]) / np.linalg.norm([-0.45, 0.75, 0.65])
 
 
 def viewer_axes() -> Array:
-    """Return as rows the viewer's right, up and towards-the-viewer, in the ground's frame, (3, 3)."""
+    """Return the default view's axes in the ground frame, as rows (3, 3): right, up, and towards the viewer."""
     sin_a, cos_a, sin_e, cos_e = np.sin(AZIMUTH), np.cos(AZIMUTH), np.sin(ELEVATION), np.cos(ELEVATION)
     towards = np.array([sin_a * cos_e, -cos_a * cos_e, sin_e])
     right = np.array([cos_a, sin_a, 0.0])
@@ -49,12 +49,12 @@ class Viewpoint:
 
 
 def usual_viewpoint() -> Viewpoint:
-    """Make the default viewpoint: all of the surface, from the front, the left and above."""
+    """Make the default viewpoint: the whole surface from the front, the left and above."""
     return Viewpoint(viewer_axes())
 
 
 def left_viewpoint(view: SeenFrom, ground: Ground, aspect: float) -> Viewpoint:
-    """Make the viewpoint of a view left in 3D, in a picture of another `aspect`: all that was in sight is."""
+    """Convert the view that the user chose in 3D to a viewpoint that shows all of it in a picture of `aspect`."""
     axes = view.axes @ ground.axes.T
     x, y = (axes @ ground.local(view.focal[None])[0])[:2]
     half = view.half_height_mm * max(1.0, view.aspect / aspect)
@@ -83,7 +83,7 @@ def surface_picture(
     progress: Progress = silent,
     viewpoint: Viewpoint | None = None,
 ) -> SurfacePicture:
-    """Draw the mesh, or the cloud's points where the mesh has no triangles.
+    """Draw a shaded picture, `width_px` wide, of the mesh, or of the cloud's points if the mesh is empty.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ HOURS_A_DAY = 24
 
 
 def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table:
-    """Make the table of id, date, age and hash of every calibration the result rests on."""
+    """Make the table of the calibrations that the result rests on: id, date, age and hash."""
     rows: list[list[Flowable]] = [heads(look, "Calibration", "id", "made", "age", "SHA-256 of its file")]
     for mark in content.calibrations:
         made = look.words("not known") if mark.made_at is None else look.words.time(mark.made_at)
@@ -39,7 +39,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
 
 
 def age_words(look: ReportLook, mark: CalibrationMark, content: ReportContent) -> str:
-    """Write the age of a calibration when it was used: '3 days', 'under 1 hour', 'not known'."""
+    """Write how old a calibration was when it was used: '3 days', 'under 1 hour', 'not known'."""
     age = mark.age(content.timestamp)
     if age is None:
         return look.words("not known")
@@ -63,7 +63,7 @@ def camera_table(look: ReportLook, calibration: CameraCalibration, width: float)
 
 
 def fan_table(look: ReportLook, calibration: FanCalibration, width: float) -> Table:
-    """Make the table of the fan's planes: fit, normal, distance from the camera, and the angles to the next one."""
+    """Make the table of the fan's light planes: fit, normal, distance from the camera, and angle to the next plane."""
     words, planes = look.words, plane_cells(calibration)
     columns = [fact.column(words) for fact in planes[0]]
     rows: list[list[Flowable]] = [heads(look, "Line", *columns, numbers=range(1, len(columns) + 1))]

@@ -38,7 +38,7 @@ from core.report.wording import grouped, short_hash
 
 
 def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the sections of the wings; one of another package is marked as such."""
+    """Make the report sections that wings bring; one from another package names that package."""
     parts: list[Flowable] = []
     for number, one in enumerate(content.brought):
         body: list[Flowable] = [figures(look, one.facts, columns=4)]
@@ -51,7 +51,7 @@ def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the section of known artefacts measured with these calibrations, against their certificates."""
+    """Make the section on known artefacts that were measured with these calibrations, against their certificates."""
     if not content.artefacts:
         return []
     words = look.words
@@ -81,7 +81,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section of camera, fan and rig side by side, and since when each calibration is valid."""
+    """Make the section on the calibrations of camera and fan, the rig, and since when each calibration holds."""
     half = (TEXT_WIDTH - GAP) * 0.42
     other = TEXT_WIDTH - GAP - half
     camera: list[Flowable] = [
@@ -129,7 +129,7 @@ ALWAYS_TOLD = ("camera_target", "plane_target")
 
 
 def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the section of the certificates that trace lengths to the metre; it cannot be left out."""
+    """Make the section on the certificates that make lengths traceable to the metre; it is always printed."""
     words, day = look.words, content.timestamp.date()
     traced = {
         words(title): content.certificates.get(name, Certificate())
@@ -151,7 +151,7 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section of frames and calibration pictures used, and why others were not."""
+    """Make the section on how many frames and calibration pictures were used, and why others were left out."""
     used = [frame.name for frame in content.frames if frame.used]
     parts: list[Flowable] = [figures(look, content.scan_facts)]
     if not content.frames:
@@ -165,7 +165,7 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
 
 
 def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section of warnings and remarks of the software; it cannot be left out."""
+    """Make the section of the program's warnings and notes; it is always printed."""
     notes = content.all_notes
     if not notes:
         return []
@@ -180,13 +180,13 @@ def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 
 
 def remarks(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the section of the operator's own words."""
+    """Make the section of the operator's remarks; [] if there are none."""
     lines = look.lines(content.remarks) if content.remarks.strip() else []
     return [section(look, "remarks", "Remarks of the operator", list(lines[:3])), *lines[3:]] if lines else []
 
 
 def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section of software and settings, and the hash over them."""
+    """Make the section on software version and settings, with the hash over them and the audit trail's."""
     known = {look.words.known(name): look.words.known(value) for name, value in content.settings.items()}
     pairs = {look.words("Software"): f"Trisect {content.version}"} | known
     shown = list(pairs.items())[: limits.settings]
@@ -206,7 +206,7 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 
 
 def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section of the hash over all inputs, and, unless hidden, that of each."""
+    """Make the section with the hash over all input files and, unless hidden, the hash of each file."""
     if not content.hashes:
         return [section(look, "inputs", "Inputs", [look.fixed_text("No hashes of the inputs were given.", "small")])]
     listed = "inputs" not in content.hidden
@@ -230,7 +230,7 @@ def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flo
 
 
 def end(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the end mark, with what the reader does not see."""
+    """Make the line that ends the report, after a list of the sections that were left out by choice."""
     said = look.words("End of report {report}", report=content.report_id)
     mark = Paragraph(f"— {markup(said)} —", look.style("end"))
     left_out = [look.words(heading) for name, heading in content.printable.items() if name in content.hidden]
@@ -247,7 +247,7 @@ SHORT_HASH = 10
 def left_out_table(
     look: ReportLook, reasons: list[LeftOut], width: float, most: int, most_names: int
 ) -> list[Flowable]:
-    """Make the table of reasons, how often, and which: at most `most` reasons, with at most `most_names` names each."""
+    """Make the table of why pictures were left out: each reason, how often, and which pictures."""
     if not reasons:
         return []
     rows: list[list[Flowable]] = [heads(look, "Left out because", "how many", "which", numbers=(1,))]
@@ -268,7 +268,7 @@ def left_out_table(
 
 
 def hash_table(look: ReportLook, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
-    """Make the table of inputs by folder, with the beginning of their SHA-256; at most `most` of them.
+    """Make the table of input files by folder with the first characters of their SHA-256, at most `most` files.
 
     As many columns as the longest name leaves room for.
     """

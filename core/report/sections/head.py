@@ -24,7 +24,7 @@ LABEL = 27 * mm  # width of the column of names
 
 
 def head(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make everything above the result."""
+    """Make the head of page one: title, laboratory, part, customer, operator, time, and instrument."""
     template, column = content.template, (TEXT_WIDTH - GAP) / 2
     name = template.name or content.laboratory
     lines = [look.text(line, "laboratory") for line in (name, *template.address) if line]

@@ -41,7 +41,7 @@ OF_ARTEFACTS = {"E_n": label("Error over the expanded uncertainty of measurement
 
 
 def reading(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the section of terms: of results and budgets on the left, of calibrations on the right."""
+    """Make the section that explains the report's terms: results and budgets left, calibrations right."""
     shown = content.printable.keys() - content.hidden
     left = (OF_RESULTS if content.characteristics else {}) | (OF_BUDGETS if "budget" in shown else {})
     right = (OF_CALIBRATIONS if "calibrations" in shown else {}) | (OF_ARTEFACTS if "artefacts" in shown else {})

@@ -21,7 +21,7 @@ NUMERIC = (3, 4, 5, 6)
 
 
 def repeats_head(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make the summary of the repeats."""
+    """Make the summary of repeated scans: their statistics, and a remark if their calibrations differ; [] if none."""
     statistics, words = content.repeat_statistics, look.words
     if statistics is None:
         return []
@@ -34,7 +34,7 @@ def repeats_head(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def repeats_table(look: ReportLook, content: ReportContent, most: int) -> list[Flowable]:
-    """Make the table of repeats, at most `most` of them."""
+    """Make the table of repeated scans, at most `most` rows."""
     rows: list[list[Cell]] = [
         heads(
             look,

@@ -52,7 +52,7 @@ SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
 
 
 def result_box(look: ReportLook, content: ReportContent, width: float) -> Table:
-    """Make the box of the one result, of all of them together, or of the cloud where there is none."""
+    """Make the box with the verdict: on the one result, on several together, or on the cloud if there is no result."""
     inner, found = width - 2 * PADDING, content.characteristics
     verdict = content.results.verdict
     if len(found) == 1 and found[0].verdict == verdict:
@@ -167,7 +167,7 @@ DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for v
 
 
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
-    """Make one row for each characteristic; the names of those whose numbers are in `budgets` link to their budgets."""
+    """Make the table of all characteristics; those numbered in `budgets` link to their uncertainty budgets."""
     keys = [budget_key(number) if number in budgets else "" for number in range(len(content.characteristics))]
     return characteristics_table(look, content, content.characteristics, keys)
 
@@ -175,7 +175,7 @@ def result_table(look: ReportLook, content: ReportContent, budgets: Collection[i
 def characteristics_table(
     look: ReportLook, content: ReportContent, shown: Sequence[Characteristic], keys: Sequence[str] = ()
 ) -> Table:
-    """Make one row for each characteristic, its name linked to its key, if it has one."""
+    """Make the table of the characteristics `shown`, each name a link to its key in `keys` unless that is ""."""
     head = heads(look, "Characteristic", *HEADS, numbers=range(1, 7))
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]
     rows += [_row(look, content, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
@@ -185,7 +185,7 @@ def characteristics_table(
 
 
 def budget_key(number: int) -> str:
-    """Return the link key of the budget of the characteristic of this number."""
+    """Return the link key of the uncertainty budget of characteristic `number`."""
     return f"budget-{number}"
 
 
@@ -237,7 +237,7 @@ class ToleranceBar(Flowable):  # type: ignore[misc]
         self.look, self.scale, self.width, self.height = look, scale, width, 15 * mm
 
     def x(self, value: float) -> float:
-        """Compute the place of a deviation on paper."""
+        """Compute the horizontal place of a deviation on the bar, in points."""
         return self.width * self.scale.share(value)
 
     def draw(self) -> None:

@@ -43,7 +43,7 @@ Part = tuple[str, Callable[[], Sequence[Flowable]]]
 
 
 def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
-    """Make everything from the title to the end mark, without what is hidden."""
+    """Make the whole report in printing order, without sections that are hidden."""
     figures: list[Part] = [
         ("surface", lambda: _surface(look, content, pictures, limits)),
         ("view", lambda: _view(look, content, pictures, limits)),
@@ -250,7 +250,7 @@ def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
 
 
 def faces_table(look: ReportLook, gauge: GaugeResult) -> list[Flowable]:
-    """Make the table of the faces: flatness, points used, and the angle between them."""
+    """Make the table of both faces: flatness and points used of each, and the angle between them."""
     words, faces = look.words, {UPPER: face_facts(gauge.upper), LOWER: face_facts(gauge.lower)}
     columns = [fact.column(words) for fact in faces[UPPER]]
     rows: list[list[Flowable]] = [heads(look, "Face", *columns, numbers=(1, 2, 3))]
@@ -319,7 +319,7 @@ ROOM = 14 * mm
 
 
 def signatures(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """Make a line for everyone who signs: those of the template, or else the operator."""
+    """Make the lines to sign on: those named in the template, or one for the operator."""
     names = content.template.signatures or (content.operator,)
     own = [look.text(content.template.text, "small")] if content.template.text else []
     lines: list[Flowable] = []

@@ -16,7 +16,7 @@ from core.report.layout.style import ReportLook
 def studies(
     look: ReportLook, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits
 ) -> list[Flowable]:
-    """Make the section of every study, each with a heading of its own."""
+    """Make the section of each study, with its heading, facts, chart and notes."""
     parts: list[Flowable] = []
     for number, study in enumerate(content.studies):
         body: list[Flowable] = [
