@@ -63,7 +63,7 @@ def _trisect(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit with its code."""
+    """Run the command line `arguments`, by default the program's own, and exit with the command's exit code."""
     # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
     os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -122,7 +122,7 @@ def _commands(_spoken: str) -> Any:
 
 
 def whole_command() -> tuple[Any, list[Brought]]:
-    """Make the group of all commands, those of the wings among them, and list the wings that cannot be used."""
+    """Make the group of all commands, the wings' included; return it with the list of wings that cannot be used."""
     command: Any = get_command(app)
     unusable = list(wings().unusable)
     for wing, origin in wings().wings:
@@ -134,7 +134,7 @@ def whole_command() -> tuple[Any, list[Brought]]:
 
 
 def with_commands(commands: Mapping[str, Any], wing: Wing) -> dict[str, Any]:
-    """Insert the commands of a wing into all commands, in the order of the help.
+    """Insert a wing's commands into `commands` after the command that the wing names; else at the end.
 
     Raises
     ------

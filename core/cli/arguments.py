@@ -22,7 +22,7 @@ from core.settings.setting import rows, rows_within
 
 
 def options(typed: Mapping[str, Any], part: str = "") -> Options:
-    """Make the pipeline's options from the words of flags; InputError if one is absurd.
+    """Convert the flags typed, by their words, to the pipeline's options; InputError if a value is not possible.
 
     A stripe that is typed is that of all stripes, in the scan and on the plane target.
     """
@@ -49,12 +49,12 @@ def _value(typed: Any) -> Any:
 
 
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:
-    """Add the pictures `names` of the set to those left out; InputError if the set has no such picture."""
+    """Add the pictures called `names` of a set to the pictures left out; InputError if the set lacks one of them."""
     return replace(chosen, excluded=excluded_names(open_set(folder), names)) if names else chosen
 
 
 def require_run(folder: Path, out: Path) -> None:
-    """Raise InputError if a set lacks anything that a whole run needs, or its results cannot be written to `out`."""
+    """Raise InputError if a set lacks something a whole run needs, or if results cannot be written to `out`."""
     found = open_set(folder)
     for require in (require_camera, require_planes, require_scan):
         require(found)

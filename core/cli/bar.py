@@ -28,7 +28,7 @@ _LONG_S = 1.0
 
 @contextmanager
 def bar(job: str = "") -> Iterator[Progress]:
-    """Make a `Progress` that shows all of a job on standard error; Ctrl-C and what else ends a command cancels.
+    """Make a context whose `Progress` shows a job on standard error, and raises Cancelled after Ctrl-C or SIGTERM.
 
     `job` is its name in `USUAL_S`, if it is one of these.
     """
@@ -43,12 +43,12 @@ def bar(job: str = "") -> Iterator[Progress]:
 
 
 def prints_lines() -> bool:
-    """Whether stages are shown as lines: off a terminal, unless the command is quiet."""
+    """Whether progress is shown as lines instead of a bar: off a terminal, unless `--quiet`."""
     return not is_quiet() and not sys.stderr.isatty()
 
 
 def lines_of(name: str) -> AbstractContextManager[Progress]:
-    """Make a `Progress` of one of several jobs at a time: a line with its name for each stage that ends."""
+    """Make a context whose `Progress` prints a line, beginning with `name`, for each stage that ends."""
     return _lines(0.0, begun=False, of=name)
 
 

@@ -20,13 +20,13 @@ _COLUMNS = (label("name in the set"), label("picture"), label("fan off"), label(
 
 
 def understood(parts: Mapping[str, str], reference: Path | None, order: str) -> ImportPlan:
-    """Plan the import of what was typed for each field of an `ImportRequest`; '' means none."""
+    """Plan an import from the text typed for each part of a recording set ("" for none), a reference and an order."""
     asked: dict[str, Any] = {part: Where.typed(text) for part, text in parts.items() if text}
     return plan_import(ImportRequest(**asked, reference=reference, order=Order(order)))
 
 
 def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_json: bool) -> None:
-    """Write the set unless it is a dry run, and print the plan."""
+    """Import the pictures as planned, or, with `dry_run`, only check the target folder; then print the plan."""
     if dry_run:
         require_free(plan, target, rig)
         imported = None

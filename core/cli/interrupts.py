@@ -33,13 +33,13 @@ class Interrupts:
         """Where a command ends by itself when it is told of a signal: whether it does by this one."""
 
     def check(self) -> None:
-        """Raise Cancelled if the command was asked to end."""
+        """Raise Cancelled if a signal has asked the command to end."""
         if self.signal:
             raise Cancelled
 
     @property
     def code(self) -> ExitCode:
-        """Exit code of the command."""
+        """Exit code of a command that a signal has ended."""
         return CODES.get(self.signal, ExitCode.INTERRUPTED)
 
     def interrupt(self, signum: int, frame: FrameType | None) -> None:
@@ -61,7 +61,7 @@ _taken: Interrupts | None = None
 
 @contextmanager
 def interruptible() -> Iterator[Interrupts]:
-    """Record the signals that end the command besides raising KeyboardInterrupt; within another one, that is used.
+    """Make a context that records signals which end the command, and raises KeyboardInterrupt; nesting is allowed.
 
     Python drops an exception that falls into a finaliser or a callback of compiled code, and the job would go on.
     """

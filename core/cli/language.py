@@ -51,7 +51,7 @@ _spoken: Language = ENGLISH
 
 
 def choose(words: Sequence[str]) -> None:
-    """Set the language named in the words of a command line, or else that of the environment.
+    """Set the language from the option in the command line `words`, else from the environment.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def choose(words: Sequence[str]) -> None:
 
 
 def speak_as(name: str, loudness: talk.Loudness) -> None:
-    """Set the language of this name and the loudness: in another process of a command."""
+    """Set the language called `name` and the loudness, in another process of the same command."""
     if name != _spoken.name:
         choose([f"{OPTION}={name}"])
     if loudness != talk.loudness():
@@ -76,7 +76,7 @@ def speak_as(name: str, loudness: talk.Loudness) -> None:
 
 
 def choose_loudness(loudness: talk.Loudness) -> None:
-    """Set the loudness from now on; if verbose, each file that is read is printed."""
+    """Set how much is printed from now on; if verbose, the name of each file that is read."""
     talk.choose(loudness)
     listen((lambda path: talk.print_line(tr("file read: {file}", file=path))) if talk.is_verbose() else None)
 
@@ -108,24 +108,24 @@ def _asked_for(words: Sequence[str]) -> str:
 
 
 def current_language() -> Language:
-    """Return the chosen language."""
+    """Return the language in which the command line prints."""
     return _spoken
 
 
 def tr(english: str, /, **values: Any) -> str:
-    """Translate fixed words of the command line, with values in their places: `tr("{n} triangles", n=3)`."""
+    """Translate fixed English words, with `values` in their places: `tr("{n} triangles", n=3)`."""
     return _spoken.label(english, **values)
 
 
 def text_of(said: Message | InputError | str) -> str:
-    """Translate a message or error of core, or known fixed words; anything else stays as it is."""
+    """Translate a message, an error or fixed words; any other text stays as it is."""
     if isinstance(said, InputError):
         return said.text_in(_spoken)
     return _spoken(said) if isinstance(said, Message) else _spoken.label(str(said))
 
 
 def speak(command: Any, values: Mapping[str, str]) -> Any:
-    """Translate the help of a command, its options and all commands within it; `values` fill its places."""
+    """Translate the help of a command, its options and subcommands; `values` fill the placeholders in the help."""
     from core.translations import languages
 
     values, everywhere = {**values, "languages": ", ".join(languages())}, _taken_everywhere()
@@ -147,7 +147,7 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
 
 
 def name_panels() -> None:
-    """Translate Typer's own words in help."""
+    """Translate the words that Typer itself prints in help."""
     if _spoken is ENGLISH and "typer.rich_utils" not in sys.modules:
         return  # it costs a start, and speaks English by itself
     from typer import rich_utils

@@ -69,7 +69,7 @@ class Shown:
     files: Mapping[str, Path] = field(default_factory=dict)
 
     def show(self, *, as_json: bool) -> None:
-        """Print the output, for people or for machines."""
+        """Print rows, notes and files of a finished command, or, with `as_json`, one JSON object."""
         if as_json:
             output.print_json(
                 {**self.values, "notes": output.notes_json(self.notes), "files": output.files_json(self.files)}
@@ -79,23 +79,23 @@ class Shown:
 
 
 def timed(progress: Progress, wanted: bool) -> Progress:
-    """Wrap the progress to record the time of the stages if that is `wanted`."""
+    """Wrap `progress` so that the time of each stage is recorded, if `wanted`; else return it unchanged."""
     return StageTimes(progress) if wanted else progress
 
 
 def show_times(progress: Progress) -> None:
-    """Print the time of the stages on standard error, if that was wanted."""
+    """Print the time of each stage on standard error, if `progress` has recorded it."""
     if isinstance(progress, StageTimes):
         output.print_times(progress.seconds(), progress.wall_s)
 
 
 def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
-    """Return the exit code of a verdict; "" where none was asked for."""
+    """Return the exit code of a verdict: done if it is among `good` or "" (no verdict), else not proven."""
     return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
 def print_cache_note() -> None:
-    """Print where compiled code is saved, if verbose, and that it is lost at the end, if it is."""
+    """Print that compiled code will be lost when the program ends, if so; with `--verbose` also where it is."""
     if talk.is_verbose():
         talk.print_line(tr("compiled code: {folder}", folder=FOLDER))
     if (note := note_on_cache()) is not None and not is_complete():
@@ -103,14 +103,14 @@ def print_cache_note() -> None:
 
 
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
-    """Run all steps; loops that were never compiled before are compiled first."""
+    """Run all steps on a recording set and return their results; compile loops first if that was never done."""
     print_cache_note()
     compile_ahead(progress)
     return run(folder, out, chosen, progress, beside)
 
 
 def show_run(result: RunResult, *, as_json: bool) -> None:
-    """Print the results of a whole run."""
+    """Print the results of all steps of a recording set."""
     gauge, verdict = result.gauge, result.results.verdict
     rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
     for of, facts in ((label("camera"), camera_facts(result.camera)), (label("planes"), planes_facts(result.fan))):
@@ -128,7 +128,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
 
 
 def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Run the camera step."""
+    """Run the camera step on a recording set, and return what is to be printed."""
     with alone_with(folder, out) as work:
         calibration = camera_step(work, chosen.for_camera, progress)
         facts = (*camera_facts(calibration), *parameter_facts(calibration))
@@ -138,7 +138,7 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 
 
 def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Run the planes step."""
+    """Run the planes step on a recording set, and return what is to be printed."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         calibration = planes_step(work, chosen.for_planes, progress)
         rows = output.fact_rows(planes_facts(calibration))
@@ -150,14 +150,14 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 def run_check(
     folder: Path, out: Path, chosen: Options, progress: Progress, celsius: float | None = None
 ) -> tuple[InterimCheck, Shown]:
-    """Run the check step; `celsius` is the temperature of the air."""
+    """Run the check step on a recording set; return the check and what is to be printed. `celsius` is the air's."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         check = check_step(work, chosen.plane_stripe, progress, celsius)
         return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
 
 
 def run_adjusting(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Re-adjust camera and fan by the pictures of the check."""
+    """Re-adjust camera and fan by the pictures of the interim check, and return what is to be printed."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         done = readjust_step(work, chosen.plane_stripe, progress)
         rows, values = output.fact_rows(readjustment_facts(done)), output.readjustment_json(done)
@@ -165,7 +165,7 @@ def run_adjusting(folder: Path, out: Path, chosen: Options, progress: Progress) 
 
 
 def undo_adjusting(folder: Path, out: Path) -> Shown:
-    """Put camera and fan back as they were calibrated."""
+    """Restore camera and fan as they were calibrated, and return what is to be printed."""
     with alone_with(folder, out) as work:
         undo_readjustment(work)
         return _shown(work, READJUST, [], {}, "planes")
@@ -174,13 +174,13 @@ def undo_adjusting(folder: Path, out: Path) -> Shown:
 def run_artefact(
     folder: Path, out: Path, id_: str, celsius: float | None, characteristic: str
 ) -> tuple[ArtefactCheck, Shown]:
-    """Compare what was measured in `out` with the certificate of the artefact called `id_`."""
+    """Compare a result in `out` with the certificate of the artefact `id_`; return the check and what to print."""
     check = artefact_step(Workspace.open(open_set(folder), out), artefact_named(id_, folder), celsius, characteristic)
     return check, Shown(output.artefact_rows(check), output.artefact_json(check))
 
 
 def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
-    """Read the checks so far of the rig of the set in `folder`, with the calibrations in `out`."""
+    """Read the past checks of the rig of a recording set; return them and what is to be printed."""
     calibration = read_calibration(out)
     history = history_of(read_rig(folder / RIG), calibration.id)
     values = {
@@ -192,7 +192,7 @@ def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
 
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
-    """Run the scan step."""
+    """Run the scan step on a recording set, and return what is to be printed."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         measured = scan_step(work, chosen.for_scan, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
@@ -203,7 +203,7 @@ def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Sh
 
 
 def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Shown]:
-    """Run the gauge step; the verdict is that on the part."""
+    """Run the gauge step on a recording set; return the verdict on the part and what is to be printed."""
     with alone_with(folder, out) as work:
         gauge, verdict = gauge_step(work, progress), read_results(work.out).verdict
         rows, values = output.gauge_rows(gauge, verdict), output.gauge_json(gauge, verdict)
@@ -213,7 +213,7 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Sho
 def run_profile(
     folder: Path, out: Path, chosen: Options, stage: str, tilt_sd_deg: float, progress: Progress
 ) -> tuple[Verdict, Shown]:
-    """Run the profile step; the verdict is that on the part."""
+    """Run the profile step on a recording set; return the verdict on the part and what is to be printed."""
     if not 0 <= tilt_sd_deg < 10:
         raise InputError(
             Message("profile.tilt_sd_range", "{given:g}° is not between 0 and 10", given=tilt_sd_deg),
@@ -231,7 +231,7 @@ def run_profile(
 
 @contextmanager
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
-    """Open and lock a recording set, with this channel for the laser, and the folder of its results."""
+    """Make a context with the workspace of a recording set and its results, locked against other processes."""
     work = Workspace.open(open_set(folder).with_channel(channel), out, part)
     print_cache_note()
     with alone_in(work.out):
@@ -247,7 +247,7 @@ def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, A
 def run_sets(
     sets: Sequence[Path], out: Path, executor: str, workers: int | None, chosen: Options, progress: Progress
 ) -> tuple[SetResult, ...]:
-    """Measure all sets; InputError before anything is begun if the folder of one is not there."""
+    """Measure all recording sets in parallel; InputError before the first one if a folder is missing."""
     for folder in sets:
         require_folder(folder)
     print_cache_note()
@@ -266,7 +266,7 @@ def measure_aloud(
     stop: Path,
     progress: Progress = silent,
 ) -> SetResult:
-    """Measure one set as `measure_set`, in any process, and print each of its stages; `name` is the language's."""
+    """Measure one recording set in a process of its own, and print each of its stages in the language `name`."""
     speak_as(name, loudness)
     with lines_of(folder.name) as tell:
 
@@ -278,7 +278,7 @@ def measure_aloud(
 
 
 def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
-    """Return the worst of the sets' exit codes.
+    """Return the worst exit code among the measured sets.
 
     70 where the program was at fault, 2 where one could not be measured, 3 where one has no thickness, 1 where one is
     not proven to conform, else 0.
@@ -292,7 +292,7 @@ def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
 
 
 def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
-    """Print the result of each set."""
+    """Print the result of each measured set, one a line, or, with `as_json`, as one JSON object."""
     if as_json:
         output.print_json({"sets": [_set_values(result) for result in results]})
         return

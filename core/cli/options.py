@@ -88,7 +88,7 @@ Profile = Annotated[
 
 
 def one_of(chosen: str, known: Sequence[str], where: str) -> str:
-    """Find `chosen` among `known`, in any case of letters; "" stays ""."""
+    """Find `chosen` among the names `known`, ignoring case; "" stays "". InputError if there is none."""
     by_lower = {one.lower(): one for one in known}
     if chosen and chosen.lower() not in by_lower:
         raise InputError(

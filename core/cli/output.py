@@ -47,7 +47,7 @@ PIPE_WIDTH = 1000
 
 
 def notes_json(notes: Sequence[Message]) -> list[dict[str, Any]]:
-    """Convert notes for ``--json`` and result files: code, English text and values."""
+    """Convert notes to dicts for `--json` and result files: code, English text and values of each."""
     return [as_json(note) for note in notes]
 
 
@@ -57,7 +57,7 @@ def print_json(values: Mapping[str, Any]) -> None:
 
 
 def console() -> Console:
-    """Return the console of standard output, as wide as a screen or, in a pipe, as its lines."""
+    """Return rich's console for standard output, PIPE_WIDTH columns wide unless that is a terminal."""
     out = Console(highlight=False, markup=False, emoji=False)
     if not out.is_terminal:
         out.width = PIPE_WIDTH
@@ -65,7 +65,7 @@ def console() -> Console:
 
 
 def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Path] | None = None) -> None:
-    """Print a table of labels and values, the notes below it, and then where the files are."""
+    """Print a table of labels and values, then the notes, then where the files were written."""
     out = console()
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_column(style="dim", no_wrap=True)
@@ -83,14 +83,14 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
 
 
 def fact_rows(facts: Iterable[Fact], tables: Iterable[FactTable] = (), reader: Reader = Reader.AUDITOR) -> Rows:
-    """Make the rows of the facts of a result for a reader; with ``--verbose`` of all of them."""
+    """Convert facts and tables of a result to rows of label and value for a reader, or, with `--verbose`, for all."""
     reader = Reader.METROLOGIST if is_verbose() else reader
     rows = [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
     return rows + [line for table in tables_for_reader(tables, reader) for line in table.lines(words())]
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
-    """Print on standard error processor time and share of each stage, and the whole duration."""
+    """Print the processor time and share of each stage, and the whole duration, on standard error."""
     table = Table(tr("stage"), box=None, padding=(0, 2, 0, 0))
     for title in (tr("processor s"), tr("share")):
         table.add_column(title, justify="right")
@@ -103,29 +103,27 @@ def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
 
 
 def words() -> Words:
-    """Return the words and numbers of core.report in the chosen language."""
+    """Make the words and number formats of the reports in the chosen language."""
     return Words(current_language())
 
 
 def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
-    """Make the rows of thickness, deviation and faces, and of the verdict on the part."""
+    """Make the rows, label and value, of a thickness and of the verdict on the part."""
     return fact_rows((*gauge_facts(gauge), verdict_fact(verdict)))
 
 
 def check_rows(check: InterimCheck) -> Rows:
-    """Make the rows of a check: its result, how far off the stripes are, and the error of a step of the part's
-    height.
-    """
+    """Make the rows, label and value, of an interim check: verdict, how far off stripes are, error of a step."""
     return [(tr(VERDICT), text_of(check.sentence)), *fact_rows(check_facts(check)), *left_out_rows(check.poses)]
 
 
 def left_out_rows(pictures: Iterable[Picture]) -> Rows:
-    """Make the rows of why pictures were left out, one line a reason."""
+    """Make the rows on pictures that were left out, one for each reason."""
     return [("", text_of(one.line())) for one in left_out(pictures)]
 
 
 def check_json(check: InterimCheck) -> dict[str, Any]:
-    """Convert a check for programs; check.json has it stripe by stripe."""
+    """Convert an interim check to a dict for `--json`, without its values stripe by stripe."""
     return {
         "passed": check.passed,
         "p": check.p,
@@ -138,7 +136,7 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
 
 
 def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
-    """Convert a re-adjustment for programs; planes.json has it in full."""
+    """Convert a re-adjustment of camera and fan to a short dict for `--json`."""
     record = done.record
     return {
         "of": record.of,
@@ -157,7 +155,7 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
 
 
 def artefact_rows(check: ArtefactCheck) -> Rows:
-    """Make the rows of a measured artefact, and how it agrees with its certificate."""
+    """Make the rows, label and value, of a measured artefact: its error and its certificate."""
     compared = check.characteristic or tr(KINDS[check.artefact.kind])
     return [
         (tr("compared"), compared),
@@ -167,7 +165,7 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
 
 
 def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
-    """Convert the check of an artefact for programs."""
+    """Convert the check by a known artefact to a dict for `--json`."""
     return {
         "artefact": check.artefact.id,
         "kind": check.artefact.kind,
@@ -183,19 +181,19 @@ def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
 
 
 def history_rows(history: RigHistory) -> Rows:
-    """Make the rows of the checks of a rig: when, the result, by how much a step was off, and within which limits."""
+    """Make the rows on a rig's past checks: how many, then each with its date, result, error of a step, and limits."""
     charted = ((one, history.chart(one)) for one in history.checks)
     return fact_rows((history_fact(history.name, len(history.checks)),), (history_table(charted),))
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
-    """Convert a past check with its limits for programs."""
+    """Convert a past check of a rig and its control limits to a dict for `--json`."""
     limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
     return {**check.values, "limits": limits}
 
 
 def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
-    """Convert the steps of pictures for programs."""
+    """Convert the step heights of single pictures, or why there is none, to a dict for `--json`."""
     return {
         "pictures": [
             {"name": one.name, "thickness_mm": one.thickness_mm, "own_mm": one.own_mm, **reason_json(one.reason)}
@@ -205,16 +203,16 @@ def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
 
 
 def reason_json(reason: Message | None, name: str = "reason") -> dict[str, Any]:
-    """Convert the reason why something was left out or failed: the English text by `name`, code and values.
+    """Convert the reason of a failure to a dict for `--json`: English text under the key `name`, code and values.
 
-    Empty for None.
+    All are empty for None.
     """
     told = as_json(reason or plain(""))
     return {name: told["text"], "code": told["code"], "values": told["values"]}
 
 
 def gauge_json(gauge: GaugeResult | None, verdict: Verdict) -> dict[str, Any]:
-    """Convert the thickness and the verdict on the part for programs; nulls where no thickness was measured."""
+    """Convert a thickness and the verdict on the part to a dict for `--json`; None: nothing was measured."""
     if gauge is None:
         return {"thickness_mm": None, "verdict": verdict}
     return {
@@ -225,7 +223,7 @@ def gauge_json(gauge: GaugeResult | None, verdict: Verdict) -> dict[str, Any]:
 
 
 def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
-    """Convert frames used and left out, and points, for programs."""
+    """Convert the number of points, and frames used and left out, to a dict for `--json`."""
     return {
         "points": points,
         "frames_used": sum(frame.used for frame in frames),
@@ -236,7 +234,7 @@ def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
 
 
 def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
-    """Convert the camera for programs."""
+    """Convert a camera calibration to a short dict for `--json`."""
     return {
         "rms_px": calibration.rms_px,
         "mean_px": calibration.mean_px,
@@ -250,7 +248,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
 
 
 def planes_json(calibration: FanCalibration) -> dict[str, Any]:
-    """Convert the fan for programs."""
+    """Convert a calibration of the fan to a short dict for `--json`."""
     return {
         "pi": calibration.fan.pis,
         "rms_mm": calibration.rms_mm,
@@ -265,5 +263,5 @@ def planes_json(calibration: FanCalibration) -> dict[str, Any]:
 
 
 def files_json(files: Mapping[str, Path]) -> dict[str, str]:
-    """Convert paths to text."""
+    """Convert the paths of files to text for `--json`, by the same names."""
     return {name: str(path) for name, path in files.items()}

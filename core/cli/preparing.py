@@ -30,7 +30,7 @@ def target_of_words(
     *,
     asymmetric: bool,
 ) -> Target:
-    """Make the target of these words; None means the default of USUAL."""
+    """Make a calibration target from the options typed; None means the usual value of its kind."""
     if kind not in USUAL:
         raise InputError(
             Message("target.no_kind", "{kind!r} is no kind of target", kind=kind),
@@ -55,7 +55,7 @@ def target_of_words(
 
 
 def target_of_rig(path: Path, which: str) -> Target:
-    """Read the camera's or the planes' target of rig.toml, or of the recording set that holds it."""
+    """Read a calibration target from a rig.toml or its recording set; `which` is "camera" or "planes"."""
     file = path / "rig.toml" if path.is_dir() else path
     rig = read_rig(file)
     require_tables(rig, file, "camera_target" if which == "camera" else "plane_target")
@@ -63,7 +63,7 @@ def target_of_rig(path: Path, which: str) -> Target:
 
 
 def one_choice(kind: str, rig: Path | None) -> None:
-    """Raise InputError unless exactly one of both states what to print."""
+    """Raise InputError unless either a kind of target or a rig.toml is given, and not both."""
     if bool(kind) == (rig is not None):
         what = (
             Message("target.kind_and_rig", "both a kind of target and a rig are given")
@@ -78,12 +78,12 @@ def one_choice(kind: str, rig: Path | None) -> None:
 
 
 def write_sheet(target: Target, paper: str, title: str, out: Path) -> None:
-    """Write the sheet as a PDF."""
+    """Write a PDF with the calibration target to scale on `paper` to the file `out`."""
     write_bytes(out, target_sheet(target, _paper(paper), title=title))
 
 
 def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
-    """Print what was written, and what to do at the printer."""
+    """Print where the target's PDF was written and how to print it; with `as_json`, as one JSON object."""
     name = _paper(paper)
     layout = sheet_layout(target, name)
     sheet = tr("{paper}, {width:g} × {height:g} mm", paper=name, width=layout.width_mm, height=layout.height_mm)
@@ -104,13 +104,13 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
 
 
 def write_card(paper: str, out: Path) -> None:
-    """Write the quick card as a PDF."""
+    """Write the quick card as a PDF on `paper` to the file `out`."""
     chosen = cast(Paper, one_of(paper, PAPERS, "--paper") or "A4")
     write_quick_card(out, output.words().language.name, chosen)
 
 
 def show_card(out: Path, *, as_json: bool) -> None:
-    """Print where the card is."""
+    """Print where the quick card was written; with `as_json`, as one JSON object."""
     if as_json:
         output.print_json({"file": str(out)})
     else:

@@ -59,7 +59,7 @@ _TARGETS = {"camera": ("camera_target",), "planes": ("plane_target",), "check": 
 def request(
     folder: Path, step: Step, choice: SourceChoice, calibrations: Path | None, settings: SourceSettings, ending: Ending
 ) -> LiveRequest:
-    """Make the request to record into SET/STEP, with the calibrations in a folder of results if one is given.
+    """Make the request to record the part `step` of a recording set; `calibrations` is a folder of results or None.
 
     Raises
     ------
@@ -103,7 +103,7 @@ class Recording:
         self._missing: tuple[Message, ...] = ()
 
     def run(self, wanted: LiveRequest) -> LiveEnded:
-        """Record until the end; Ctrl-C is one, too, and what was recorded by then stays. So it is with SIGTERM."""
+        """Record as requested until the end, Ctrl-C or SIGTERM; pictures recorded by then are kept."""
         with interruptible() as interrupts, self._ended_by(interrupts):
             if not self._by_itself:
                 threading.Thread(target=self._listen, name="keys", daemon=True).start()
@@ -213,7 +213,7 @@ class Recording:
 
 
 def show(ended: LiveEnded, *, as_json: bool) -> None:
-    """Print what was recorded.
+    """Print how many pictures were recorded and lost, and where; with `as_json`, as one JSON object.
 
     Raises
     ------
@@ -235,7 +235,7 @@ def show(ended: LiveEnded, *, as_json: bool) -> None:
 
 
 def show_sources(*, as_json: bool) -> None:
-    """List the sources to record from, and for kinds that cannot be used what to install."""
+    """Print the cameras and other sources that can be recorded from, and what to install for the others."""
     rows: list[tuple[str, Message | str, str]] = []
     for name, source in SOURCES.items():
         rows.append((name, missing_driver(name) or source.title, ""))

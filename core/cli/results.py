@@ -45,7 +45,7 @@ from core.states import VERDICT
 
 
 def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
-    """Inspect a scan; nominal surfaces are beside the plan."""
+    """Measure the features of a plan on a scan; return the inspection and the file written, or None."""
     asked, folder = read_plan(plan), out or source
     if out is not None:
         make_folder(out)
@@ -55,7 +55,7 @@ def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) 
 
 
 def inspection_exit_code(inspection: Inspection, written: Path | None) -> ExitCode:
-    """Return the exit code of the verdict on the part, or "not proven" where something could not be measured."""
+    """Return the exit code of the verdict on the part; "not proven" if a feature could not be measured."""
     return ExitCode.NOT_PROVEN if inspection.problems else exit_code(_verdict_on_part(inspection, written))
 
 
@@ -65,7 +65,7 @@ def _verdict_on_part(inspection: Inspection, written: Path | None) -> Verdict:
 
 
 def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bool) -> None:
-    """Print the inspection, for people or for machines."""
+    """Print an inspection, and the file written if there is one; with `as_json`, as one JSON object."""
     files = {} if written is None else {"inspection": written}
     if as_json:
         values = inspection_values(inspection) | {"verdict": _verdict_on_part(inspection, written)}
@@ -91,7 +91,7 @@ def run_compare(
     to: Path | None,
     progress: Progress,
 ) -> Shown:
-    """Compare and write; asked: diameter (0: chosen), reach and registration (None: found)."""
+    """Compare a scan with another surface and write the result; `asked`: diameter, reach, registration in mm."""
     diameter, reach, registration = asked
     for name, value, least in (
         ("--diameter", diameter, 0.0),
@@ -118,7 +118,7 @@ def run_mesh(
     *,
     in_camera_frame: bool,
 ) -> Shown:
-    """Prepare the mesh and write it; formats may be joined by commas."""
+    """Prepare the mesh of a scan and write it in `formats`, of which one may name several, joined by commas."""
     names = [name.strip() for one in formats for name in one.split(",") if name.strip()]
     made, written = mesh_step(results, names, options, to or results, progress, in_camera_frame=in_camera_frame)
     filled = int(made.mesh.filled.sum())
@@ -162,7 +162,7 @@ class ReportOptions:
     studies: Sequence[Path] = ()
 
     def said(self, content: ReportContent) -> ReportContent:
-        """Apply these options to the content. InputError if a choice is not one, or the template cannot be read."""
+        """Return the report's content with these options applied; InputError if one is not possible."""
         language, paper = (
             one_of(self.language, LANGUAGES, "--language"),
             one_of(self.paper, PAPERS, "--paper"),
@@ -183,7 +183,7 @@ class ReportOptions:
 
 
 def run_report(folder: Path, out: Path, chosen: ReportOptions, progress: Progress) -> Shown:
-    """Run the report step."""
+    """Write report.pdf of a set's results, and return what is to be printed."""
     with alone_with(folder, out, chosen.part) as work:
         report_step(work, progress, chosen.said)
         notes = tuple(work.record().notes.get("report", ()))
@@ -199,7 +199,7 @@ def run_export(
     *,
     in_camera_frame: bool,
 ) -> Shown:
-    """Write results in the formats of other programs.
+    """Write the results in `out` in the `formats` of other programs, and return what is to be printed.
 
     InputError if there is no such format, or nothing to write from.
     """
@@ -215,7 +215,7 @@ def run_export(
 
 
 def run_import(file: Path, out: Path) -> Shown:
-    """Write a camera of another program as camera.json."""
+    """Write the camera that another program calibrated as camera.json, and return what is to be printed."""
     calibration = import_camera(file, out)
     camera = calibration.camera
     rows = [

@@ -21,7 +21,7 @@ NOTHING_TYPED: Typed = MappingProxyType({})
 
 
 def takes(*steps: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command the flags of all settings of these steps, in place of its parameter `typed`."""
+    """Make a decorator that gives a command the flags of all settings of `steps` in place of its parameter `typed`."""
     within = [one for step in steps for row in settings_of(step) for one in rows_within(row)]
     flags = {parameter.name: parameter for parameter in map(_parameter, within) if parameter is not None}
 

@@ -176,7 +176,7 @@ def simulate(
 
 
 def as_typed(path: Path) -> str:
-    """Quote a path for this computer's command line where that is needed."""
+    """Quote a path for the command line of this operating system, if it needs quotes."""
     return subprocess.list2cmdline([str(path)]) if sys.platform == "win32" else shlex.quote(str(path))
 
 

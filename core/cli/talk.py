@@ -21,34 +21,34 @@ _loudness = Loudness.USUAL
 
 
 def choose(wanted: Loudness) -> None:
-    """Set the loudness from now on."""
+    """Set how much is printed from now on."""
     global _loudness
     _loudness = wanted
 
 
 def loudness() -> Loudness:
-    """Return the loudness."""
+    """Return how much is printed: quiet, normal or verbose."""
     return _loudness
 
 
 def is_quiet() -> bool:
-    """Whether only errors are printed."""
+    """Whether nothing but errors and questions is printed on standard error (`--quiet`)."""
     return _loudness is Loudness.QUIET
 
 
 def is_verbose() -> bool:
-    """Whether more than usual is printed."""
+    """Whether more than usual is printed on standard error (`--verbose`)."""
     return _loudness is Loudness.VERBOSE
 
 
 def print_line(line: str) -> None:
-    """Print a line, unless the command is quiet."""
+    """Print a line on standard error, unless the command is quiet."""
     if not is_quiet():
         print_always(line)
 
 
 def print_always(line: str) -> None:
-    """Print a line even if the command is quiet: errors, and questions to the user."""
+    """Print a line on standard error even if the command is quiet, as errors and questions."""
     with suppress(OSError):  # a terminal that was closed hears nothing
         sys.stderr.write(f"{visible(line)}\n")
         sys.stderr.flush()

@@ -36,7 +36,7 @@ class Commands(TyperGroup):
             raise Cancelled from interrupt
 
     def resolve_command(self, ctx: typer.Context, args: list[str]) -> Any:  # type: ignore[override]
-        """Find the command that was typed (called by Typer); InputError if there is none of that name."""
+        """Find the command that was typed (called by Typer); InputError if there is no such command."""
         if args[0] not in self.commands:
             if ctx.parent is None and (wing := missing_wing(args[0])):
                 raise InputError(
@@ -54,7 +54,7 @@ class Commands(TyperGroup):
 
 
 def missing_wing(command: str) -> str:
-    """The wing that has this command and is not there; "" where none is known to have it."""
+    """Return the name of the missing wing that has this command; "" if no such wing is known."""
     if command in OUR_COMMANDS:
         return OUR_COMMANDS[command]
     for wing in wings().away:
@@ -65,7 +65,7 @@ def missing_wing(command: str) -> str:
 
 
 def usage_error(error: Any, words: Sequence[str]) -> InputError:
-    """Convert an error of Typer's to one of our own.
+    """Convert an error of Typer's about the command line to an InputError.
 
     Parameters
     ----------

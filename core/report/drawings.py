@@ -103,7 +103,7 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
 
 
 def image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:
-    """Compress a drawn figure without loss, or as JPEG with full colour resolution where it holds a photograph."""
+    """Render a matplotlib figure for reportlab, as JPEG if `photo`, else lossless; `decimal` is the decimal sign."""
     rgb = figures.pixels(figure, decimal)
     if not photo:
         return ImageReader(Image.fromarray(rgb))

@@ -32,7 +32,7 @@ _HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-
 
 
 def system_fonts() -> Sequence[tuple[str, str]]:
-    """List the fonts of this computer as (family, path), one a family, those that cover many scripts first."""
+    """List the upright fonts of this computer as (family, path): common families first, then regular weights."""
     own = str(Path(matplotlib.get_data_path()))
     found = {
         (
