@@ -37,7 +37,7 @@ def calibrate_camera(
     k3: bool | None = None,
     progress: Progress = silent,
 ) -> CameraCalibration:
-    """Calibrate the camera that took views of a flat target.
+    """Calibrate the camera, its intrinsics and distortion, from views of a flat target that it took.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def calibrate_fan(
     compression: Compression = UNCOMPRESSED,
     progress: Progress = silent,
 ) -> FanCalibration:
-    """Calibrate the light planes of the fixed laser by a flat target held into its light.
+    """Calibrate the light planes of the fixed laser from pictures of a flat target held into its light.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from core.simulate.scenario import Scenario
 
 
 def read_cloud(path: str | Path) -> Cloud:
-    """Read the points of a cloud.ply.
+    """Read the points of a cloud.ply with their normals, σ, intensity and frame; in mm.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def open_set(folder: str | Path) -> RecordingSet:
 def run(
     folder: str | Path, out: str | Path, *, options: Options | None = None, progress: Progress = silent
 ) -> RunResult:
-    """Measure a recording set as `trisect run` does: calibrations, cloud, mesh, thickness, report.
+    """Measure a recording set and write all results to `out`: calibrations, cloud, mesh, thickness, report.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def run(
 
 
 def simulate(folder: str | Path, *, progress: Progress = silent, **scenario: Any) -> RecordingSet:
-    """Render a recording set of the simulated rig, and its truth beside it in FOLDER.truth.
+    """Render a recording set of the simulated rig into `folder`, and its true values into FOLDER.truth.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def simulate(folder: str | Path, *, progress: Progress = silent, **scenario: Any
 
 
 def report(folder: str | Path, out: str | Path, *, progress: Progress = silent) -> Path:
-    """Write report.pdf of the results that a set has in `out`.
+    """Write report.pdf from the results of a recording set in `out`, and return its path.
 
     Parameters
     ----------

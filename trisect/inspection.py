@@ -86,7 +86,7 @@ def measure_features(
     part: Part | None = None,
     progress: Progress = silent,
 ) -> Inspection:
-    """Measure features of a part: planes, steps, spheres, cylinders, distances and what else a plan may have.
+    """Measure features of a part on the points of a scan: planes, steps, spheres, cylinders, distances and more.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ def read_picture(path: str | Path, channel: Channel | None = None) -> Picture:
 
 
 def compression_of(path: str | Path, channel: Channel | None = None) -> Compression:
-    """Tell how far compression leaves a picture file off, by its own tables.
+    """Estimate from a picture file's own tables by how many grey levels its compression errs; zeros if lossless.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def compression_of(path: str | Path, channel: Channel | None = None) -> Compress
 
 
 def checked_picture(picture: ArrayLike, where: str) -> Picture:
-    """Return an array that is a picture as it is; InputError that names `where` for any other one."""
+    """Return `picture` as an array if it holds grey levels (rows, columns) in uint8 or uint16; else InputError."""
     array = np.asarray(picture)
     if array.ndim == 2 and array.size and array.dtype in (np.uint8, np.uint16):
         return array
@@ -95,7 +95,7 @@ def checked_picture(picture: ArrayLike, where: str) -> Picture:
 
 
 def same_size(picture: Picture, other: Picture, where: str) -> None:
-    """InputError that names `where` unless two pictures have one size and type."""
+    """Raise InputError, naming `where`, unless two pictures have the same size and type."""
     if picture.shape == other.shape and picture.dtype == other.dtype:
         return
     raise InputError(
@@ -113,7 +113,7 @@ def same_size(picture: Picture, other: Picture, where: str) -> None:
 
 
 def size_of_camera(picture: Picture, camera: Camera, where: str) -> None:
-    """InputError that names `where` unless a picture has the size of the camera's."""
+    """Raise InputError, naming `where`, unless a picture has the image size of the camera."""
     width, height = camera.image_size
     same_size(picture, np.empty((height, width), picture.dtype), where)
 

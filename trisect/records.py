@@ -18,7 +18,7 @@ R = TypeVar("R")
 
 @cache
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """The function as the package exports it: InputError for a record of another kind than its annotations name."""
+    """Wrap a function so that it raises InputError for a record of another type than its annotations name."""
     signature = inspect.signature(function)
     kinds = get_type_hints(function)
 

@@ -78,7 +78,7 @@ class SolvedScan:
 
     @property
     def errors(self) -> PointErrors:
-        """How the errors of the points hang together: what an uncertainty is reckoned from."""
+        """Errors of the scan's points and how they are correlated, from which uncertainties are computed."""
         scan = self.result
         errors = PointErrors.of_scan(self.features, scan.covariance, self.common, scan.speckle, scan.pis.shape[1])
         return replace(errors, facts=self.facts, light=self.light)

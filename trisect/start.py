@@ -24,7 +24,7 @@ _ALONE = "install Trisect into an environment of its own (pipx install, or uv to
 
 
 def main_cli() -> int:
-    """Run `trisect`; returns the exit code."""
+    """Run the command line `trisect` and return its exit code."""
     if (what := complaint()) is not None:
         return _refuse(what)
     from core.cli import main
@@ -34,7 +34,7 @@ def main_cli() -> int:
 
 
 def main_window() -> int:
-    """Run `trisect-workbench`; returns the exit code."""
+    """Run the window `trisect-workbench` and return its exit code."""
     if (what := complaint()) is not None:
         return _refuse(what)
     from workbench.__main__ import main
@@ -43,7 +43,7 @@ def main_window() -> int:
 
 
 def complaint(home: Path = HOME) -> str | None:
-    """Why the program beside this package is not whole; None if it is, as far as `changed_files` looks."""
+    """Return a sentence if a folder of the program is missing or replaced, or a file of it is changed; else None."""
     for name in FOLDERS:
         found = find_spec(name)
         place = Path(found.origin) if found is not None and found.origin is not None else None
@@ -59,7 +59,7 @@ def complaint(home: Path = HOME) -> str | None:
 
 
 def changed_files(home: Path) -> Iterator[str]:
-    """The files installed in `home` that are not as they were; none in a checkout.
+    """List the installed files of the program that are missing or changed since installation; none in a checkout.
 
     All are looked at for being there and for their size; what the folders begin with, which any package of that name
     brings, for what it says, too.
