@@ -18,7 +18,7 @@ _PANEL_MM, _GAP_MM = 46.0, 9.0  # a panel's side, and between two
 
 
 def plan_map_png(own: Array, common: Array, image_size: tuple[int, int], title: str) -> bytes:
-    """Draw a PNG of three maps on one scale; `own`, `common` (rows, columns) in mm, NaN where nothing is measured."""
+    """Draw maps of the own, common and total σ of depth, (rows, columns) in mm, in one scale, as a PNG file's bytes."""
     total = np.hypot(own, common)
     known = total[np.isfinite(total)]
     colors = color_scale(SIGMA_MAP, 0.0, max(float(np.quantile(known, 0.98)), 1e-6) if len(known) else 1.0)

@@ -43,7 +43,7 @@ class PlanResult:
 
     @property
     def largest(self) -> Prediction:
-        """Prediction of the largest height, by which changes are judged."""
+        """Prediction for the block of the largest height, by which changes of the rig are judged."""
         return max(self.predictions, key=lambda prediction: prediction.height_mm)
 
 
@@ -56,7 +56,7 @@ def plan(
     bounds: bool = False,
     progress: Progress = silent,
 ) -> PlanResult:
-    """Predict what the rig in the rig.toml at `rig` (or in that folder) will measure.
+    """Predict what the planned rig in the rig.toml at `rig`, or in the folder `rig`, will measure.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def plan(
 
 
 def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
-    """Write plan.json and sigma.png into `folder` and return where they are.
+    """Write plan.json and sigma.png, the map of σ, into `folder`, and return the paths of both.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
 
 
 def plan_values(result: PlanResult) -> dict[str, Any]:
-    """Make the values of a plan for machines; lengths in mm, angles in degrees as rig.toml has them."""
+    """Convert the prediction of a planned rig to the values of plan.json; lengths in mm, angles in degrees."""
     return {
         "version": __version__,
         "design": {name: value for name, value in asdict(result.design).items() if not name.endswith("_target")},

@@ -11,7 +11,7 @@ from core.wings.rig_planning.prediction.predict import Prediction
 
 
 def plan_rows(result: PlanResult, words: Words) -> list[tuple[str, str]]:
-    """Make a row, name and value in a language, of each thing that a plan predicts."""
+    """Write what is predicted of a planned rig as rows (name, value) in the language of `words`."""
     rows: list[tuple[str, str]] = []
     for prediction in result.predictions:
         said = words("U = {U:.3f} mm (k = {k:g})", U=prediction.U_mm, k=prediction.k)

@@ -26,7 +26,7 @@ def run_plan(
     bounds: bool = False,
     progress: Progress,
 ) -> Shown:
-    """Predict, write the files requested, and return the lines to print."""
+    """Predict what a planned rig will measure, write the files to `out` if given, and return what is to be printed."""
     if scans < 1:
         raise InputError(
             Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=scans),

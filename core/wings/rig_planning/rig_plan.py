@@ -58,7 +58,7 @@ class ForetoldRig:
 
 
 def foretell_rig(rig: Path, language: str, progress: Progress = silent, options: Options | None = None) -> ForetoldRig:
-    """Plan the rig of a rig.toml, as `trisect plan RIG` does.
+    """Predict what the planned rig in a rig.toml will measure, worded in `language` for the window.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def foretell_rig(rig: Path, language: str, progress: Progress = silent, options:
 
 
 def foretell_project(folder: Path, project: Project, language: str, progress: Progress = silent) -> ForetoldRig:
-    """Plan the rig of the project in `folder`, as far as it is known; what is not is as in the paper's rig.
+    """Predict what the rig of a project will measure; what the project does not know is as in the paper's rig.
 
     Targets, laser, part and stability are those of the project; camera and distance of the laser those of the accepted
     calibrations; distance and height of the part as they were measured; as many pictures as there are.

@@ -31,7 +31,7 @@ def read_positions(
     folders: Sequence[Path], artefact: Artefact, *, calibrated_mm: float = 0.0, u_mm: float = 0.0,
     diameter_mm: float = 0.0, progress: Progress = silent,
 ) -> tuple[Reading, ...]:  # fmt: skip
-    """Read form and size of the sphere, spacing of a bar's two, or flatness of the largest plane, of each cloud.
+    """Measure an artefact in the cloud of each folder, one a position: a sphere, a ball bar, or a plane.
 
     Each has the doubts of its scan; of a cloud without a scan.npz nothing is known.
 

@@ -31,12 +31,12 @@ CONTROL_MM = 76.0
 
 
 def read_printed(path: Path) -> ReportedStudy:
-    """Read a study.json for the report; InputError if it is missing or damaged."""
+    """Read the study.json at `path` as the report prints it; InputError if it is missing or damaged."""
     return printed(read_study(path))
 
 
 def printed(study: Study) -> ReportedStudy:
-    """Prepare a study for the report: title, facts, tables, notes and the figure's drawing."""
+    """Prepare a study for printing: its title, facts, tables, notes, and the function that draws its figure."""
     return ReportedStudy(
         KINDS[kind_of(study)],
         name_of(study),
@@ -55,7 +55,7 @@ def _figure(study: InOrder, look: ReportLook, width: float) -> Figure:
 
 
 def run_lines(study: InOrder) -> dict[str, float]:
-    """Collect the lines of a run chart by their names; only those that there are."""
+    """Collect the horizontal lines of a study's run chart by name, as mean and limits; those not known are missing."""
     lines: dict[str, float | None]
     match study:
         case RepeatStudy():
@@ -76,7 +76,7 @@ def run_lines(study: InOrder) -> dict[str, float]:
 
 
 def control_charts(study: InOrder) -> dict[str, Chart]:
-    """Collect the control charts of a series by the names of their points; none where these are too few for limits."""
+    """Collect the two control charts of a series by the names of their points; empty if the points are too few."""
     if not isinstance(study, SeriesStudy) or study.charts is None:
         return {}
     return dict(zip(chart_names(study), (study.charts.location, study.charts.spread), strict=True))
@@ -85,7 +85,7 @@ def control_charts(study: InOrder) -> dict[str, Chart]:
 def control_charts_figure(
     look: ReportLook, charts: Mapping[str, Chart], unit: str, width_mm: float, height_mm: float
 ) -> Figure:
-    """Draw control charts one above the other, by the names of their points.
+    """Draw the control charts, by the names of their points, one above the other.
 
     A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
     """

@@ -41,20 +41,20 @@ _OF_INDICES = {
 
 
 def study_title(study: Study, words: Words = ENGLISH) -> str:
-    """Make the title of a study: 'Gauge R&R', 'Series: thickness'."""
+    """Write the title of a study: 'Gauge R&R', 'Series: thickness'."""
     kind, name = words(KINDS[kind_of(study)]), name_of(study)
     return words("{name}: {value}", name=kind, value=name) if name else kind
 
 
 def name_of(study: Study) -> str:
-    """Return the name of what a study measured: a label for the thickness, any other as the user gave it; "": none."""
+    """Return the name of what a study of repeats or a series measured, as "thickness"; "" for other kinds of study."""
     if not isinstance(study, (RepeatStudy, SeriesStudy)):
         return ""
     return label("thickness") if study.name == THICKNESS else study.name
 
 
 def study_facts(study: Study) -> tuple[Fact, ...]:
-    """Make the facts of a study, its verdict first."""
+    """Make the facts (name, value, unit) on a study, its verdict first."""
     match study:
         case RepeatStudy():
             facts = _of_repeats(study)
@@ -70,7 +70,7 @@ def study_facts(study: Study) -> tuple[Fact, ...]:
 
 
 def study_tables(study: Study) -> tuple[FactTable, ...]:
-    """Make the tables of a study, the most important one first."""
+    """Make the tables of a study, the most important first; () for a type-1 study."""
     match study:
         case RepeatStudy():
             return (_contributions(study.budget),)
@@ -85,7 +85,7 @@ def study_tables(study: Study) -> tuple[FactTable, ...]:
 
 
 def digits_of(study: Type1Study | SeriesStudy) -> int:
-    """Return the number of decimals of a study's values: one more than their scatter has."""
+    """Compute how many decimals a study's values are shown with: one more than their standard deviation."""
     return max(decimals_of(study.s) + 1, LEAST_DIGITS)
 
 
@@ -334,7 +334,7 @@ def _control_limits(study: SeriesStudy) -> tuple[FactTable, ...]:
 
 
 def chart_names(study: SeriesStudy) -> tuple[str, str]:
-    """Return the names of the points of the two control charts of a series."""
+    """Return the names of the points of a series' two control charts: "X̄", "s", or "value", "moving range"."""
     return (label("value"), label("moving range")) if study.size == 1 else (label("X̄"), label("s"))
 
 

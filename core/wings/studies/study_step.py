@@ -49,7 +49,7 @@ def keep_study(
     folder: Path, kind: Kind, text: str, base: Path, limits: Mapping[str, float], name: str = THICKNESS,
     progress: Progress = silent,
 ) -> KeptStudy:  # fmt: skip
-    """Make a study of a table and store both in the project: the caller adds it to the project's list.
+    """Make a study from the text of a table, and store both in the project's folder.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def keep_study(
 def keep_type1(
     folder: Path, repeats: Sequence[tuple[str, float, Doubts]], nominal: float, tolerance: float
 ) -> KeptStudy:
-    """Store the type-1 study of repeats (label, value, doubts) against T = `tolerance`, the full width; all in mm.
+    """Make a type-1 study of repeats (label, value, doubts), T = `tolerance` being the full width in mm, and store it.
 
     Raises
     ------
@@ -115,12 +115,12 @@ def keep_type1(
 
 
 def look_at_study(folder: Path, id_: str) -> Study:
-    """Read the study called `id_` of the project in `folder`; InputError if it is missing or damaged."""
+    """Read the study whose id is `id_` in the project's folder; InputError if it is missing or damaged."""
     return read_study(study_path(folder, id_))
 
 
 def export_study(folder: Path, id_: str, path: Path) -> Path:
-    """Write a copy of a study to `path`: its table as CSV, else study.json; InputError if it cannot be done."""
+    """Write a copy of a study to `path`: its table if the name ends in .csv, else study.json; return the path."""
     source = study_path(folder, id_)
     source = source.with_name(TABLE) if path.suffix.lower() == ".csv" else source
     if not source.exists():
@@ -134,7 +134,7 @@ def export_study(folder: Path, id_: str, path: Path) -> Path:
 
 
 def read_study_table(path: Path) -> str:
-    """Read the text of a table, and check that it is one; InputError if not."""
+    """Read the text of a CSV table, and check that it can be parsed; InputError if not."""
     table_of(text := read_text(path), path)
     return text
 
@@ -143,7 +143,7 @@ def project_rows(
     kind: Kind, folder: Path, artefact: Artefact, calibrated_mm: float, u_mm: float, diameter_mm: float,
     name: str = THICKNESS, progress: Progress = silent,
 ) -> str:  # fmt: skip
-    """Make rows of a study's table, under a head line, from another project's results, with their doubts if any.
+    """Make rows for a study's table from another project's results: CSV text with a head line.
 
     For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
     acceptance check what `read_positions` finds in its cloud, the project standing for the position. For a series its

@@ -34,7 +34,7 @@ ARTEFACTS = ("sphere", "bar", "plane")
 
 
 def finish(study: Study, out: Path | None, *, as_json: bool) -> None:
-    """Write study.json if requested, print the results, and exit with the code of the verdict."""
+    """Write study.json to `out` unless None, print the study, and exit with the exit code of its verdict."""
     files = {} if out is None else {"study": write_study(out, study)}
     Shown(study_rows(study), study_values(study), study.notes, files).show(as_json=as_json)
     raise typer.Exit(exit_code(study.verdict, GOOD))
@@ -43,7 +43,7 @@ def finish(study: Study, out: Path | None, *, as_json: bool) -> None:
 def repeats(
     files: Sequence[Path], name: str, nominal: float | None, tolerance: float | None, u: float | None, guard: float
 ) -> RepeatStudy:
-    """Study the repeats of a table or of folders."""
+    """Make a study of repeats from a table, or of the characteristic `name` in folders of results."""
     _not_negative(u, "--u")
     _not_negative(guard, "--guard")
     found = read_repeats(files, name)
@@ -67,7 +67,7 @@ def repeats(
 def type1(
     files: Sequence[Path], name: str, nominal: float | None, tolerance: float | None, resolution: float | None
 ) -> Type1Study:
-    """Make a type-1 study of a table or of folders."""
+    """Make a type-1 study from a table, or of the characteristic `name` in folders of results."""
     _finite(nominal, "--nominal")
     limits = _both_sides(tolerance)
     found = read_repeats(files, name)
@@ -103,7 +103,7 @@ def type1(
 def series(
     files: Sequence[Path], name: str, nominal: float | None, tolerance: float | None, u: float | None, size: int
 ) -> SeriesStudy:
-    """Study a series of a table, or of folders of results or projects in the order given."""
+    """Make a study of a series from a table, or of the characteristic `name` in folders in the order of measuring."""
     _not_negative(u, "--u")
     found = read_repeats([results_in(path) for path in files], name)
     nominal, limits = _asked(found, nominal, tolerance)
@@ -129,7 +129,7 @@ def series(
 
 
 def grr(file: Path, name: str, tolerance: float | None) -> GrrStudy:
-    """Make a gauge R&R study of a table."""
+    """Make a gauge R&R study from a table; `name` is the characteristic to read where it lists folders of results."""
     limits = _both_sides(tolerance)
     found = read_crossed(file, name)
     if found.values.max() == found.values.min():
@@ -157,7 +157,7 @@ def acceptance(
     limits: Mapping[str, float | None],
     progress: Progress,
 ) -> AcceptanceCheck:
-    """Make an acceptance check of a table, or of folders of results."""
+    """Make an acceptance check from a table, or from the clouds in folders of results, one for each position."""
     given = cast(dict[Quantity, float], {name: limit for name, limit in limits.items() if limit is not None})
     for name, limit in given.items():
         if not (limit > 0 and math.isfinite(limit)):
@@ -249,5 +249,5 @@ def _not_negative(value: float | None, where: str) -> None:
 
 
 def study_rows(study: Study) -> Rows:
-    """Make the rows of a study, with its verdict."""
+    """Make the rows, label and value, of a study: its title, verdict, facts and tables."""
     return [(tr("study"), study_title(study, words())), *fact_rows(study_facts(study), study_tables(study))]

@@ -72,7 +72,7 @@ def bounds_of(
     stability: Stability = STABLE,
     progress: Progress = silent,
 ) -> tuple[Bound, ...]:
-    """Compute the bounds of a `design` for blocks of `heights_mm` (None: those of the design) and a ball, in one table.
+    """Compute the Cramér–Rao bounds of a planned rig for blocks of `heights_mm` (None: the design's) and a ball.
 
     Of a rig that may change between calibration and scan (`stability`) those of a thickness with and without a check.
 

@@ -59,7 +59,7 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
 
 
 def view_poses(design: Design, seed: int) -> list[Pose]:
-    """Draw the poses of the camera target in the planned views.
+    """Draw random poses of the camera target in the camera frame, one for each planned view.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
 
 
 def plan_check(design: Design, seed: int) -> list[PoseFeatures]:
-    """Simulate the planned number of pictures of the plane target in the fan, taken on the day of the scan."""
+    """Simulate the planned pictures of an interim check: the plane target in the fan on the day of the scan."""
     return _plates_seen(design, seed, design.check_poses, "check noise")
 
 
@@ -113,7 +113,7 @@ def _plates_seen(design: Design, seed: int, count: int, what: str) -> list[PoseF
 
 
 def plates_under_fan(design: Design, seed: int, count: int) -> list[tuple[Pose, list[LitLine]]]:
-    """Draw `count` poses of the plane target, and compute the fan's stripes on the light parts of each."""
+    """Draw `count` random poses of the plane target, each with the fan's stripes on its light parts."""
     rig, plate = design.rig(), printed(design.plane_target)
     near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
     poses = plane_poses(fan_centres(rig, count, near, far), plate.outline, generator(seed, "plane poses"))
@@ -159,7 +159,7 @@ def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.
 
 
 def square_covariance(uv: Array, edge_px: float) -> Array:
-    """Compute the covariance (8, 8) in px² of a square's corners `uv` (4, 2) in order, where two straight edges meet.
+    """Compute the covariance (8, 8) in px² of a square's corners `uv` (4, 2), found by fitting lines to its edges.
 
     `edge_px` is the error of one pixel's length of an edge.
 

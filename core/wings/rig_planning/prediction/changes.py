@@ -114,7 +114,7 @@ def compare(
     changes: tuple[Change, ...] = CHANGES,
     progress: Progress = silent,
 ) -> tuple[Effect, ...]:
-    """Predict the effect of each of `changes` on U of `base`, the most helpful first.
+    """Predict U of the thickness after each of `changes` to the rig, and sort them by that U, the smallest first.
 
     Plan and change are compared on the same `scans` first scans of the plan, so that luck does not decide.
     """
@@ -131,7 +131,7 @@ def compare(
 
 
 def advice(effects: tuple[Effect, ...]) -> Message:
-    """Make the sentence on the change that helps most, or that none does."""
+    """Make the sentence on which change of the rig helps most, or that none of those tried does."""
     best = effects[0] if effects else None
     if best is None or best.U_mm is None or best.share > WORTHWHILE_SHARE:
         return Message(

@@ -192,19 +192,19 @@ class Design:
 
     @property
     def focal_px(self) -> float:
-        """Focal length in pixels."""
+        """Focal length of the camera in pixels."""
         return self.focal_mm * 1e3 / self.pixel_um
 
     @property
     def work_point(self) -> Array:
-        """Point (3,) in mm where the fan's middle line passes before the camera, a little above the table."""
+        """Point (3,) in mm of the camera frame, a little above the table, on the fan's middle plane."""
         depth = self.distance_mm - _UNDER_FAN_MM * self.distance_mm / TABLE_DEPTH_MM
         middle = pencil_fan().planes[1].pi
         paper = (1 - middle[2] * WORK_POINT[2]) / middle[1]
         return np.array([0.0, paper * depth / WORK_POINT[2], depth])
 
     def camera(self) -> Camera:
-        """Make the paper's camera with this sensor and focal length: its distortion, its skew, its centre."""
+        """Make the planned camera: its sensor and focal length, with the distortion and skew of the paper's camera."""
         width, height = self.pixels
         matrix = np.array(FULL_MATRIX) * (self.focal_px / _PAPER_FOCAL)
         matrix[:2, 2] = [
@@ -215,7 +215,7 @@ class Design:
         return Camera((width, height), matrix, np.array(DISTORTION))
 
     def fan(self) -> Fan:
-        """Make a pencil about an axis at the baseline, its middle plane through the work point."""
+        """Make the planned fan: light planes through one axis at the baseline, the middle one through `work_point`."""
         point = self._axis_point()
         middle = np.cross(self.work_point - point, _AXIS_DIRECTION)
         middle /= np.linalg.norm(middle)
@@ -233,7 +233,7 @@ class Design:
         return Fan(tuple(LightPlane(normal / (normal @ point)) for normal in normals))
 
     def rig(self) -> Rig:
-        """Make camera, fan and lasers for the twin."""
+        """Make the simulated rig of this design: camera, fan and both lasers."""
         optics = replace(
             Optics(),
             speckle_contrast=self.speckle,
@@ -247,22 +247,22 @@ class Design:
         return Rig(self.camera(), self.fan(), emitter, scale, optics, beam, hand)
 
     def scene(self, height_mm: float) -> Scene:
-        """Make a scene with a block of this height in mm on the table, under the fan, placed as the twin's."""
+        """Make a scene with a block of `height_mm` on the table under the fan, placed as in the simulation."""
         block = turned(gauge_block(height_mm, self.block_mm), np.radians(YAW_DEG))
         return Scene.on_table(self.table(), block)
 
     def ball(self, diameter_mm: float) -> Scene:
-        """Make a scene with a ball of this diameter in mm on the table, placed as the twin's."""
+        """Make a scene with a ball of `diameter_mm` on the table, placed as in the simulation."""
         radius = diameter_mm / 2
         return Scene.on_table(self.table(), Sphere(np.array([0.0, BALL_AWAY_MM, radius]), radius))
 
     def table(self) -> Pose:
-        """Compute the pose of the table, tilted as the twin's."""
+        """Compute the pose of the table in the camera frame, tilted as in the simulation."""
         across = WORK_POINT[1] * self.distance_mm / TABLE_DEPTH_MM
         return Pose(table_pose().rotation, np.array([0.0, across, self.distance_mm]))
 
     def sweeps_over(self, scene: Scene, seed: int) -> list[Sheet]:
-        """Draw the sheets of the hand-held laser in every frame of a scan of `scene`."""
+        """Draw the light sheets of the hand-held laser over `scene`, one for each planned sweep."""
         course = hand_course(sweep_range(scene, aim_of(scene)), self.sweeps, generator(seed, "sweeps"))
         factor = self.hand_baseline_mm / _HAND_BASELINE_MM
         return replace(course, baseline=course.baseline * factor).sheets(self.rig())

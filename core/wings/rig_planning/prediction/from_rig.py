@@ -16,7 +16,7 @@ from core.wings.rig_planning.prediction.design import PAPER_PIXEL_UM, Design
 
 
 def read_design(path: Path) -> Design:
-    """Read the design in the rig.toml at `path`, or in the recording set that holds it.
+    """Read the design of a planned rig from the rig.toml at `path`, or from the one in the folder `path`.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def read_design(path: Path) -> Design:
 
 
 def read_stated(path: Path) -> tuple[Part, Stability | None]:
-    """Read the statements on the part and on how far the rig may change from the rig.toml at `path` or in that folder.
+    """Read what a rig.toml, or the one in the folder `path`, states of the part and of the rig's stability.
 
     That is as far as its temperatures have it, and within the hour: nobody knows when it will be used. InputError as
     `read_design`.

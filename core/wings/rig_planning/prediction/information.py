@@ -63,7 +63,7 @@ class Sensing:
 
     @classmethod
     def of(cls, design: Design, *, speckle: bool) -> Sensing:
-        """Make light and camera of a `design`."""
+        """Make the light and the camera of a planned rig, with or without laser speckle."""
         rig = design.rig()
         shot = 1 / design.electrons_per_grey
         read = np.sqrt(design.read_noise_grey**2 + ROUNDING_VARIANCE)
@@ -75,20 +75,20 @@ class Sensing:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns of camera and fan."""
+        """Number of unknown parameters of camera and fan together."""
         return CAMERA + len(self.fan.jacobian.T)
 
     def of_line(self, number: int) -> Array:
-        """Return the derivatives (3, P) of π of one of the fan's planes by the fan's unknowns."""
+        """Return the derivatives (3, P) of the light plane π of fan line `number` by the fan's P unknowns."""
         return np.asarray(self.fan.jacobian[3 * number : 3 * number + 3])
 
     def line_of(self, piece: LitLine) -> int:
-        """Find the number of the fan's plane that a stripe is of."""
+        """Find the number of the fan line whose light plane the stripe `piece` lies on."""
         off = np.abs(self.fan.pis @ piece.points.mean(axis=0) - 1)
         return int(off.argmin())
 
     def density(self, line: LitLine, background: float, pictures: int = 1) -> float:
-        """Compute N0 in px·√px of a stripe of this brightness and width over pictures, its speckle the same in all."""
+        """Compute N0 in px·√px of a stripe in the mean of several pictures: its mean place over L px has σ ≥ N0/√L."""
         noise = NoiseModel(self.noise.read_grey / np.sqrt(pictures), self.noise.grey_per_electron / pictures)
         return stripe_density(
             float(np.median(line.width)), float(np.median(line.height)), background, noise, self.speckle
@@ -96,14 +96,14 @@ class Sensing:
 
 
 def calibration_information(sensing: Sensing, seed: int) -> Array:
-    """Compute the information (U, U) on camera and fan of the planned views and poses, all in one adjustment."""
+    """Compute the Fisher information (U, U) on camera and fan from all planned calibration pictures."""
     information = np.zeros((sensing.unknowns, sensing.unknowns))
     information[:CAMERA, :CAMERA] += _of_views(sensing, seed)
     return information + check_information(sensing, seed, sensing.design.poses)
 
 
 def change_covariance(sensing: Sensing, stability: Stability) -> Array:
-    """Compute the covariance (U, U) of camera and fan by changes since they were calibrated."""
+    """Compute the covariance (U, U) of camera and fan by their changes between calibration and scan."""
     fan, here = Fan(tuple(LightPlane(pi) for pi in sensing.fan.pis)), parameters_of(sensing.camera)
     columns = []
     for one, share in zip(changes(sensing.camera, fan), stability.over_default, strict=True):
@@ -116,7 +116,7 @@ def change_covariance(sensing: Sensing, stability: Stability) -> Array:
 
 
 def flat_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, tau: Array, by: Array) -> Array:
-    """Compute the information (C, C) of a stripe of light plane `pi` on the flat surface `tau`, both (3,) in 1/mm.
+    """Compute the Fisher information (C, C) of a stripe of light plane `pi` on the plane `tau`, both (3,) in 1/mm.
 
     `by` (6, C) are the derivatives of π and τ, one above the other, by the unknowns; the camera's are the first.
     """
@@ -129,7 +129,7 @@ def flat_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, tau:
 
 
 def round_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, centre: Array, by: Array) -> Array:
-    """Compute the information (C, C) of a stripe of light plane `pi` (3,) on a sphere about `centre` (3,) in mm.
+    """Compute the Fisher information (C, C) of a stripe of light plane `pi` (3,) on a sphere about `centre` (3,).
 
     `by` (7, C) are the derivatives of π, the centre and the radius by the unknowns; the camera's are the first.
     """
@@ -147,7 +147,7 @@ def round_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, cen
 
 
 def eliminated(information: Array, last: int) -> Array:
-    """Reduce an `information` matrix to what is left when its `last` unknowns are unknown and of no interest."""
+    """Reduce an information matrix by eliminating its `last` unknowns, which are not of interest."""
     keep = len(information) - last
     own, shared = information[keep:, keep:], information[:keep, keep:]
     unit = 1 / np.sqrt(np.maximum(np.diag(own), 1e-300))
@@ -156,7 +156,7 @@ def eliminated(information: Array, last: int) -> Array:
 
 
 def covariance(information: Array) -> Array:
-    """Invert an information matrix, its unknowns scaled so that px, mm and 1/mm do not upset it."""
+    """Invert an information matrix, with its unknowns scaled for a stable inversion."""
     unit = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
     return np.asarray(np.linalg.inv(information * np.outer(unit, unit)) * np.outer(unit, unit))
 
@@ -177,7 +177,7 @@ def _of_views(sensing: Sensing, seed: int) -> Array:
 
 
 def check_information(sensing: Sensing, seed: int, poses: int) -> Array:
-    """Compute the information (U, U) on camera and fan of so many poses of the plane target and the stripes on them."""
+    """Compute the Fisher information (U, U) on camera and fan from `poses` simulated pictures of the plane target."""
     size = sensing.unknowns
     information = np.zeros((size, size))
     columns = np.concatenate([np.arange(CAMERA), size + np.arange(_POSE)])
@@ -241,7 +241,7 @@ class PlannedScan:
     sweeps: tuple[Seen, ...]
 
     def information(self) -> Array:
-        """Compute the information (U + S, U + S) on camera, fan and surfaces; the sweeps' planes are eliminated."""
+        """Compute the Fisher information (U + S, U + S) of the scan on camera, fan and surfaces, sweeps eliminated."""
         size = self.sensing.unknowns + self.unknowns
         total = np.zeros((size, size))
         for number, seen in enumerate(self.fan):
@@ -253,7 +253,7 @@ class PlannedScan:
         return total
 
     def of_sweep(self, seen: Seen) -> Array:
-        """Compute the information (U + S + 3, U + S + 3) of one sweep, with its own plane last."""
+        """Compute the Fisher information (U + S + 3, U + S + 3) of one sweep; its light plane's unknowns are last."""
         size = self.sensing.unknowns + self.unknowns
         return self._of(seen, np.eye(_PLANE, size + _PLANE, size))
 
@@ -270,7 +270,7 @@ class PlannedScan:
 
 
 def block_scan(sensing: Sensing, height_mm: float, seed: int) -> PlannedScan:
-    """Plan the scan of a block on the table; unknown are two tilts of both faces, distances in mm of table and top."""
+    """Plan the scan of a block on the table, whose unknowns are two tilts and the distances of table and top."""
     stage = Stage(sensing.design, height_mm)
     normal = stage.faces[TABLE].normal
     across = np.linalg.svd(normal[None])[2][1:]
@@ -286,7 +286,7 @@ def block_scan(sensing: Sensing, height_mm: float, seed: int) -> PlannedScan:
 
 
 def ball_scan(sensing: Sensing, diameter_mm: float, seed: int) -> PlannedScan:
-    """Plan the scan of a ball on the table: unknown are the table's τ, the ball's centre and its radius."""
+    """Plan the scan of a ball on the table, whose unknowns are the table's plane, the ball's centre and radius."""
     stage = Stage(sensing.design, diameter_mm, sensing.design.ball(diameter_mm))
     face = stage.faces[TABLE]
     tau = face.normal / float(face.corners[0] @ face.normal)

@@ -28,7 +28,7 @@ REACH = 6.0
 
 
 def stripe_density(width: float, height: float, background: float, noise: NoiseModel, speckle: Speckle) -> float:
-    """Compute N0 in px·√px of a stripe of Gaussian σ `width` in px, `height` grey levels above its `background`."""
+    """Compute N0 in px·√px of a stripe of Gaussian σ `width` in px: its mean place over L px has σ ≥ N0/√L."""
     x = _pixels(width)
     section = height * np.exp(-0.5 * (x / width) ** 2)
     derivatives = np.column_stack([section * x / width**2, section / height, np.ones_like(x), x])
@@ -43,7 +43,7 @@ def stripe_density(width: float, height: float, background: float, noise: NoiseM
 
 
 def edge_density(step: float, dark: float, blur_px: float, noise: NoiseModel) -> float:
-    """Compute N0 in px·√px of a straight edge of `step` grey levels above `dark`, blurred with σ `blur_px`."""
+    """Compute N0 in px·√px of a straight edge of `step` grey levels: its mean place over L px has σ ≥ N0/√L."""
     x = _pixels(blur_px)
     slope = step * np.exp(-0.5 * (x / blur_px) ** 2) / (np.sqrt(2 * np.pi) * blur_px)
     risen = np.asarray(ndtr(x / blur_px), dtype=np.float64)
@@ -64,7 +64,7 @@ def crossing_bound(density_a: float, density_b: float, length_px: float, angle: 
 
 
 def point_bound(target: Checkerboard | Charuco | CircleGrid, density: float, px_per_mm: float) -> float:
-    """Compute the least σ in px per coordinate of a target's point whose edges have this `density`.
+    """Compute the least σ in px per coordinate of a target's point from the N0 (`density`) of its edges.
 
     A corner of a board hangs on half a square of edge to each of four sides, a circle's middle on its rim.
     """

@@ -50,7 +50,7 @@ class FlatFace:
     albedo: float
 
     def cut(self, sheet: Sheet) -> Array | None:
-        """Cut the face with the sheet's plane: ends (2, 3) in mm of the segment; None if it misses the face."""
+        """Intersect the face with a light sheet's plane: ends (2, 3) in mm of the segment; None if they do not meet."""
         off = self.corners @ sheet.plane.pi - 1
         following = np.roll(off, -1)
         crossed = np.flatnonzero((off < 0) != (following < 0))
@@ -61,7 +61,7 @@ class FlatFace:
         return np.asarray(start + share[:, None] * (np.roll(self.corners, -1, axis=0)[crossed] - start))
 
     def seen_along(self, rays: Array) -> Array:
-        """Compute the points (N, 3) in mm where `rays` (N, 3) meet the face's plane."""
+        """Compute the points (N, 3) in mm where camera rays (N, 3) meet the face's plane."""
         return np.asarray(rays * ((self.normal @ self.corners[0]) / (rays @ self.normal))[:, None])
 
 
@@ -84,14 +84,14 @@ class LitLine:
         return len(self.uv)
 
     def select(self, keep: slice) -> LitLine:
-        """Select the points of the slice `keep`."""
+        """Select the points of the stripe that the slice `keep` covers."""
         return LitLine(
             self.uv[keep], self.normal[keep], self.height[keep], self.width[keep], self.points[keep], self.face
         )
 
 
 def faces_of(scene: Scene, table: Pose, reach_mm: float) -> tuple[FlatFace, ...]:
-    """List the table, as far as `reach_mm` from its origin, and the flat faces of the meshes (pairs of triangles)."""
+    """List the flat faces of a scene: the table, a square of half side `reach_mm`, then the faces of its meshes."""
     square = reach_mm * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
     faces = [FlatFace(table.apply(square), table.rotation[:, 2], scene.table_albedo)]
     for mesh in scene.meshes:
@@ -105,7 +105,7 @@ def faces_of(scene: Scene, table: Pose, reach_mm: float) -> tuple[FlatFace, ...]
 def lit_lines(
     sheet: Sheet, faces: Sequence[FlatFace], occluders: Array, camera: Camera, blur_px: float, filter_px: float
 ) -> tuple[LitLine, ...]:
-    """Compute the stripes of one sheet of light on `faces`, hidden and shaded by `occluders` (T, 3, 3) in mm.
+    """Compute the stripes that one light sheet draws on `faces`, less what `occluders` (T, 3, 3) in mm hide or shade.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def lit_lines(
 
 
 def lit_ball(sheet: Sheet, ball: Sphere, number: int, camera: Camera, blur_px: float) -> tuple[LitLine, ...]:
-    """Compute the stripe of one sheet of light on a ball, called face `number`; nothing else hides or shades it."""
+    """Compute the stripe that one light sheet draws on a ball, as on face `number`; nothing hides or shades it."""
     off = float(sheet.plane.distances(ball.centre[None])[0])
     if abs(off) >= ball.radius:
         return ()

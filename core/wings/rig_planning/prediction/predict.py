@@ -60,7 +60,7 @@ class SigmaMap:
 
     @property
     def total(self) -> Array:
-        """Own and common σ together, in mm."""
+        """Combined own and common σ of the depth in mm, (rows, columns); NaN where nothing is measured."""
         return np.asarray(np.hypot(self.own, self.common))
 
 
@@ -98,7 +98,7 @@ class Prediction:
 
     @property
     def U_mm(self) -> float:
-        """Expanded uncertainty U = k u."""
+        """Expanded uncertainty U = k u of the thickness, in mm."""
         return self.k * self.u_mm
 
 
@@ -118,7 +118,7 @@ class Planner:
     _known: dict[tuple[object, ...], object] = field(default_factory=dict)
 
     def predict(self, design: Design, height_mm: float, scans: int = 1) -> Prediction:
-        """Predict a block of `height_mm` from `scans` drawn scans, each with calibrations of its own.
+        """Predict the uncertainty of the thickness of a block of `height_mm`, by simulating `scans` scans of it.
 
         Raises
         ------
@@ -230,7 +230,7 @@ def _known_rows(part: Part, height_mm: float) -> tuple[Contribution, ...]:
 
 
 def light_not_foretold(part: Part) -> Message | None:
-    """Make the message on the further row of U of a scan if light may come from below the surface; else None."""
+    """Make the message that light from below the part's surface may add to U of a scan; None if it cannot."""
     if not part.lets_light_in:
         return None
     return Message(

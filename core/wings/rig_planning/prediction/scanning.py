@@ -24,7 +24,7 @@ from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 
 
 def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = silent) -> ScanFeatures:
-    """Simulate the features of a scan of a block of `height_mm`; `seed` draws hand and noise.
+    """Simulate what the stripe extraction finds in a scan of a block of `height_mm`, by the random `seed`.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class Stage:
         self.faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
 
     def lines(self, sheets: Sequence[Sheet], seen: SeenStripes) -> list[LitLine]:
-        """Compute the stripes of some sheets of light."""
+        """Compute the stripes that the light `sheets` draw on the scene's faces, trimmed as the extraction does."""
         return [
             line
             for sheet in sheets
@@ -88,7 +88,7 @@ class Stage:
         ]
 
     def background_grey(self) -> float:
-        """Compute the grey level of the room's light on table and block, in the mean."""
+        """Compute the mean grey level of table and block in the room's light."""
         lamp = LAMP / np.linalg.norm(LAMP)
         table = self.faces[0]
         top = min(self.faces, key=lambda face: float(face.corners[:, 2].mean()))

@@ -83,21 +83,21 @@ class StripeQuality:
     filter_px: float
 
     def sigma(self, height: Array) -> Array:
-        """Compute the stated σ (N,) in pixels of points whose stripe is `height` (N,) grey levels high."""
+        """Compute the stated σ (N,) in pixels of centreline points for a stripe's `height` (N,) in grey levels."""
         return _power_law(height, self.heights, self.stated)
 
     def errors(self, height: Array, rng: np.random.Generator) -> Array:
-        """Draw errors (N,) in pixels of neighbouring points about one pixel apart, correlated as the trial's."""
+        """Draw correlated errors (N,) in pixels of neighbouring centreline points, for `height` (N,) in grey levels."""
         unit = _correlated(len(height), self.actual_correlation_px, rng)
         return np.asarray(unit * _power_law(height, self.heights, self.actual))
 
     def flicker(self, count: int, rng: np.random.Generator) -> Array:
-        """Draw relative deviations (count,) of the brightness of neighbouring points."""
+        """Draw correlated relative deviations (count,) of the brightness at neighbouring centreline points."""
         return self.flicker_sd * _correlated(count, self.flicker_px, rng)
 
 
 def try_stripes(light: Light, heights: tuple[float, float], optics: Optics, scale: float) -> StripeQuality:
-    """Render and read stripes of `light` from the faintest to the brightest of `heights` in grey levels.
+    """Measure how well stripes of a `light` are extracted, by rendering some between two `heights` in grey levels.
 
     Raises
     ------
@@ -125,17 +125,17 @@ class SeenStripes:
 
     @classmethod
     def of_plates(cls, design: Design) -> SeenStripes:
-        """Make the fan's stripes on the plates of its calibration, read from the difference of two pictures."""
+        """Make the kind of stripe that the fan draws on calibration plates, read from two pictures' difference."""
         return cls._planned(design.rig(), design.rig().fan_beam, design, single=False)
 
     @classmethod
     def of_fan(cls, design: Design) -> SeenStripes:
-        """Make the fan's stripes in a scan's reference."""
+        """Make the kind of stripe that the fan draws in a scan's reference picture."""
         return cls._planned(design.rig(), design.rig().fan_beam, design, single=True)
 
     @classmethod
     def of_hand(cls, design: Design) -> SeenStripes:
-        """Make the hand-held laser's stripes in the frames of a scan."""
+        """Make the kind of stripe that the hand-held laser draws in the frames of a scan."""
         return cls._planned(design.rig(), design.rig().sweep_beam, design, single=False)
 
     @classmethod
@@ -144,7 +144,7 @@ class SeenStripes:
         return cls(rig.optics, rig.scale, single, filter_for(float(width)))
 
     def tried(self, lines: Sequence[LitLine], background_grey: float) -> SeenStripes:
-        """Try stripes as wide and as bright as `lines` over this background; return the kind with its quality.
+        """Return this kind of stripe with its quality, found by rendering and extracting stripes like `lines`.
 
         Raises
         ------
@@ -173,7 +173,7 @@ class SeenStripes:
         return replace(self, filter_px=quality.filter_px, background_grey=background_grey, quality=quality)
 
     def centreline(self, line: LitLine, rng: np.random.Generator) -> Centreline:
-        """Simulate the centreline that the extraction finds of `line`; `rng` draws its errors."""
+        """Simulate the centreline that the extraction finds for a stripe, with random errors."""
         assert self.quality is not None, "the stripes have not been tried"
         error = self.quality.errors(line.height, rng)
         strength = line.height * np.maximum(1 + self.quality.flicker(len(line), rng), 0.05)

@@ -83,7 +83,7 @@ class Crossed:
 
 
 def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
-    """Read repeats from one table, or from folders of results that have a characteristic `name`.
+    """Read repeated values of one quantity from one table, or of the characteristic `name` from folders of results.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
 
 
 def repeats_of(table: Table, name: str = THICKNESS) -> Repeats:
-    """Make repeats from a table; InputError if something in it is wrong."""
+    """Convert a table to repeated values of one quantity with their uncertainties; InputError if a cell is wrong."""
     column = table.name_of(VALUE) or VALUE[0]
     values = table.numbers(column)
     called = table.name_of(("scan", "part"))
@@ -114,7 +114,7 @@ def repeats_of(table: Table, name: str = THICKNESS) -> Repeats:
 
 
 def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
-    """Read a gauge R&R study from the table at `path`; InputError as `crossed_of`, or if it cannot be read."""
+    """Read the values of a gauge R&R study, parts × operators × repeats, from the table at `path`."""
     if path.is_dir():
         raise InputError(
             Message("study.grr_needs_table", "a gauge R&R study needs a table of part, operator and value"), where=path
@@ -123,7 +123,7 @@ def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
 
 
 def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
-    """Make a gauge R&R study from a table, every part measured as often by every operator.
+    """Convert a table to the values of a gauge R&R study: parts × operators × repeats, each as often.
 
     Raises
     ------
@@ -179,12 +179,12 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
 
 
 def read_readings(path: Path) -> tuple[Reading, ...]:
-    """Read the readings of an acceptance check from the table at `path`; InputError as `read_repeats`."""
+    """Read the readings of an acceptance check, one a row, from the table at `path`."""
     return readings_of(read_table(path))
 
 
 def readings_of(table: Table) -> tuple[Reading, ...]:
-    """Make the readings of an acceptance check from a table; InputError if something in it is wrong."""
+    """Convert a table to the readings of an acceptance check, one a row; InputError if a cell is wrong."""
     path = table.path
     quantities = table.texts("quantity")
     for line, quantity in zip(table.lines, quantities, strict=True):

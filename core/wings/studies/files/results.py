@@ -43,7 +43,7 @@ class Measured:
 
 
 def measured_in(folder: Path, name: str) -> Measured:
-    """Read the characteristic `name` of a folder: the thickness of gauge.json, or one of inspection.json.
+    """Read the characteristic `name` of a folder of results, from gauge.json (the thickness) or inspection.json.
 
     Raises
     ------

@@ -36,14 +36,14 @@ SCHEMA = 1
 
 
 def write_study(folder: Path, study: Study) -> Path:
-    """Write study.json into `folder`, made if need be; InputError if it cannot be written."""
+    """Write study.json into `folder`, which is made if missing, and return its path; InputError if that fails."""
     path = make_folder(folder) / STUDY
     write_text(path, to_json({"schema": SCHEMA, **study_values(study), "version": __version__}))
     return path
 
 
 def study_values(study: Study) -> dict[str, Any]:
-    """Make the values of a study by the names of study.json; infinite or unknown ones become null."""
+    """Convert a study to the values of study.json; infinite and unknown numbers become null."""
     match study:
         case RepeatStudy():
             values = _repeats(study)
@@ -90,7 +90,7 @@ def _doubted(doubted: Doubted) -> dict[str, Any]:
 
 
 def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
-    """Make the values of a budget: its rows, and their sum."""
+    """Convert an uncertainty budget to values for study.json: its rows, and u, ν_eff, k and U."""
     return {
         "rows": [row_values(row) | {"share": budget.share(row)} for row in budget.rows],
         "value": budget.value,
@@ -105,7 +105,7 @@ def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
 
 
 def row_values(row: Contribution) -> dict[str, Any]:
-    """Make the values of a row of a budget; `u_input` in `unit`, `contribution` in the result's."""
+    """Convert a row of an uncertainty budget to values for study.json; `contribution` is in the result's unit."""
     return {
         "source": kept(row.words),
         "value": row.value,
@@ -119,7 +119,7 @@ def row_values(row: Contribution) -> dict[str, Any]:
 
 
 def zones_values(zones: Zones) -> dict[str, Any]:
-    """Make the values of the rule of a decision: its guard band and its zones, all as deviations."""
+    """Convert the zones of a decision by ISO 14253-1 to values for study.json, as deviations from nominal."""
     return {
         "rule": "ISO 14253-1",
         "lower": zones.lower,
@@ -422,7 +422,7 @@ _StudyFile: Any = Annotated[_Repeats | _Type1 | _Grr | _Acceptance | _Series, Fi
 
 
 def read_study(path: Path) -> Study:
-    """Read study.json.
+    """Read a study from the study.json at `path`.
 
     Raises
     ------

@@ -38,7 +38,7 @@ class Table:
         return len(self.lines)
 
     def name_of(self, names: Sequence[str]) -> str | None:
-        """Find which of `names` the table has; None if none of them. InputError if it has several."""
+        """Find which one of the column `names` the table has; None if it has none, InputError if it has several."""
         found = [name for name in names if name in self.columns]
         if len(found) > 1:
             raise InputError(
@@ -49,7 +49,7 @@ class Table:
         return found[0] if found else None
 
     def texts(self, *names: str) -> tuple[str, ...]:
-        """Read the texts of the column called by one of `names`; InputError if there is none, or a cell is empty."""
+        """Read the column that has one of `names` as texts; InputError if it is missing or a cell is empty."""
         name = self._needed(names)
         for line, cell in zip(self.lines, self.columns[name], strict=True):
             if not cell:
@@ -62,25 +62,22 @@ class Table:
 
     @property
     def doubts(self) -> tuple[Doubts, ...]:
-        """Doubts about the result of each row; () where the column is empty or missing."""
+        """Doubts about each row's result, reasons why it proves nothing, from the column "doubts"; () for none."""
         cells = self.columns.get(DOUBTS, ("",) * len(self))
         return tuple(tuple(map(Doubt.named, cell.split())) for cell in cells)
 
     def numbers(self, *names: str) -> tuple[float, ...]:
-        """Read the numbers of the column called by one of `names`.
-
-        InputError if there is none, or a cell is no finite number.
-        """
+        """Read the column that has one of `names` as finite numbers; InputError if it is missing or a cell is not one."""
         name = self._needed(names)
         return tuple(self._number(name, row) for row in range(len(self)))
 
     def numbers_if_any(self, *names: str) -> tuple[float, ...] | None:
-        """Read numbers as `numbers`, or None if there is no such column, or nothing is in it."""
+        """Read the cells of the column that has one of `names` as numbers; None if it is missing or empty."""
         name = self.name_of(names)
         return None if name is None or not any(self.columns[name]) else self.numbers(name)
 
     def numbers_or(self, default: float, *names: str) -> tuple[float, ...]:
-        """Read numbers as `numbers`, with `default` where the cell is empty or there is no such column."""
+        """Read the cells of the column that has one of `names` as numbers; `default` for an empty or missing cell."""
         name = self.name_of(names)
         if name is None:
             return (default,) * len(self)
@@ -126,7 +123,7 @@ class Table:
 
 
 def read_table(path: Path) -> Table:
-    """Read a table.
+    """Read a CSV table with a head line from the file at `path`.
 
     Raises
     ------
@@ -137,12 +134,12 @@ def read_table(path: Path) -> Table:
 
 
 def separator_of(head: str) -> str:
-    """Find the separator of a table whose head line is `head`."""
+    """Find the separator of a CSV table (semicolon, tab or comma) in its head line."""
     return next((one for one in SEPARATORS if one in head), ",")
 
 
 def with_rows(text: str, more: str) -> str:
-    """Append the rows of another table, in the same order of columns but for doubts, which have a column.
+    """Append the rows of the CSV table `more`, with the same columns, to the table `text`; doubts get a column.
 
     Parameters
     ----------
@@ -171,7 +168,7 @@ def with_rows(text: str, more: str) -> str:
 
 
 def table_of(text: str, path: Path) -> Table:
-    """Parse the table in `text`; `path` is for complaints, and names in it are relative to its folder.
+    """Parse a CSV table in `text`; `path` is the file it comes from, named in errors.
 
     Raises
     ------

@@ -54,7 +54,7 @@ class ProbedSphere:
 
 
 def probed_sphere(points: Array) -> ProbedSphere:
-    """Fit the sphere of free radius through (N, 3) points in mm.
+    """Fit a sphere of free radius to points (N, 3) in mm: diameter, form and the points used.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def probed_sphere(points: Array) -> ProbedSphere:
 
 
 def probed_flatness(points: Array) -> tuple[float, int]:
-    """Compute the range in mm of the distances of (N, 3) points from their plane, and how many were used."""
+    """Compute the range in mm of the distances of points (N, 3) from a fitted plane, and how many points were used."""
     _enough(points, label("plane"))
     _, residuals, used = _trimmed(points, _plane)
     return float(np.ptp(residuals)), used
@@ -170,7 +170,7 @@ class Reading:
 
     @property
     def error(self) -> float:
-        """Error in mm, measured − calibrated."""
+        """Error of the reading in mm, measured − calibrated."""
         return self.measured - self.calibrated
 
 
@@ -197,27 +197,27 @@ class CheckedQuantity:
 
     @property
     def title(self) -> Message:
-        """Name of the quantity that is checked."""
+        """Name of the quantity that is checked, as "probing error, form"."""
         return TITLES[self.quantity]
 
     @property
     def worst(self) -> Reading:
-        """Reading with the largest magnitude of error."""
+        """Reading with the error of the largest magnitude."""
         return max(self.readings, key=lambda one: abs(one.error))
 
     @property
     def largest_error(self) -> float:
-        """Error of the worst reading in mm, with its sign."""
+        """Error of the largest magnitude among the readings, in mm with its sign."""
         return self.worst.error
 
     def verdict_of(self, reading: Reading) -> Verdict:
-        """Decide on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
+        """Decide whether the error of one reading is within ± the limit; `Verdict.NONE` without a limit."""
         doubts = (*left_by_check(reading.doubts), *(self._of_artefact if reading.u <= 0 else ()))
         return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, doubts)
 
     @property
     def doubts(self) -> Doubts:
-        """Doubts that readings prove anything, by their own scans or as their artefact has no uncertainty.
+        """Reasons why the readings prove nothing: doubts of their scans, or an artefact without uncertainty.
 
         () for none.
         """
@@ -233,17 +233,17 @@ class CheckedQuantity:
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict of the worst of the readings: one that does not conform is enough, all must conform."""
+        """Verdict on this quantity: the worst verdict among its readings; `Verdict.NONE` without a limit."""
         return Verdict.worst(self.verdict_of(one) for one in self.readings)
 
     @property
     def positions(self) -> int:
-        """Number of different positions; several readings may be of one."""
+        """Number of different positions that the readings were taken in."""
         return len({one.position for one in self.readings})
 
     @property
     def enough_positions(self) -> bool:
-        """Whether there are as many positions as the guideline requires."""
+        """Whether readings were taken in as many positions as VDI/VDE 2634 part 2 requires."""
         return self.positions >= POSITIONS[self.quantity]
 
 
@@ -255,12 +255,12 @@ class AcceptanceCheck:
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict of the worst quantity with a limit; none if none has one."""
+        """Verdict on the check: the worst among the quantities with a limit; `Verdict.NONE` if none has a limit."""
         return Verdict.worst(one.verdict for one in self.quantities)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the figures; the first states what the check is and is not."""
+        """Notes on the check: that it is no certificate, where positions are too few, and doubts."""
         said = [PATTERN]
         for one in self.quantities:
             if not one.enough_positions:
@@ -275,7 +275,7 @@ class AcceptanceCheck:
 def acceptance_check(
     readings: Sequence[Reading], limits: Mapping[Quantity, float] | None = None, *, k: float = 2.0
 ) -> AcceptanceCheck:
-    """Check `readings` against `limits` in mm by quantity.
+    """Compare readings of artefacts with the permitted errors in mm, `limits`, of each quantity.
 
     Raises
     ------

@@ -59,18 +59,18 @@ class UncertaintyBudget:
 
     @property
     def U(self) -> float:
-        """Expanded uncertainty k·u."""
+        """Expanded uncertainty U = k·u, in the budget's unit."""
         return self.k * self.u
 
     def share(self, row: Contribution) -> float:
-        """Compute the part of u² that a row makes up, 0 … 1."""
+        """Compute the share (0 … 1) of u² that one row of the budget contributes."""
         return row.u_mm**2 / self.u**2 if self.u else 0.0
 
 
 def add_up(
     rows: Sequence[Contribution], *, value: float | None = None, coverage: float = COVERAGE, unit: str = "mm"
 ) -> UncertaintyBudget:
-    """Add up the budget of independent contributions: u_c² = Σ u_i², ν_eff by Welch–Satterthwaite, k = t_p(ν_eff).
+    """Add up independent contributions: u_c² = Σ u_i², ν_eff by Welch–Satterthwaite, k = t_p(ν_eff).
 
     References
     ----------
@@ -95,7 +95,7 @@ OF_EACH_SCAN = frozenset((Cause.POINT_NOISE, Cause.SWEEP_PLANES))
 def from_budgets(
     values: Sequence[float], budgets: Sequence[Sequence[Contribution]], *, unit: str = "mm"
 ) -> UncertaintyBudget:
-    """Make the budget of the mean of n scans with a budget each.
+    """Make the uncertainty budget of the mean of n scans from the uncertainty budget of each scan.
 
     What is common stays whole, at its quadratic mean over the scans. What is drawn anew with each scan shrinks with √n:
     as stated, or, where the values scatter by more than that, as observed, with n − 1 degrees of freedom. So no noise
@@ -119,7 +119,7 @@ def _quadratic_mean(source: Source, budgets: Sequence[Sequence[Contribution]]) -
 
 
 def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, unit: str = "mm") -> UncertaintyBudget:
-    """Make the budget of the mean of n scans whose budgets are not known.
+    """Make the uncertainty budget of the mean of n scans from their stated u alone, or, with None, their scatter.
 
     Parameters
     ----------

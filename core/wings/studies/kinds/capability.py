@@ -60,7 +60,7 @@ class Scatter:
 
 
 def indices(scatter: Scatter, lower: float, upper: float) -> Indices:
-    """Compute the indices for the limits `lower` < `upper`, one of which may be infinite.
+    """Compute two capability indices with 95 % intervals for limits `lower` < `upper`, one of which may be infinite.
 
     The interval of p is that of σ by χ². That of pk adds, in squares, how well the mean is known: from n values, and
     from what moves all of them alike. σ holds the scatter of the measurement too, so an index is too small rather than
@@ -79,7 +79,7 @@ def indices(scatter: Scatter, lower: float, upper: float) -> Indices:
 
 
 def looks_normal(values: Array) -> bool:
-    """Whether values (n,), n ≥ 8, not all the same, may be normally distributed (Anderson–Darling test at 5 %)."""
+    """Whether the Anderson–Darling test at 5 % allows that values (n,), n ≥ 8, are normally distributed."""
     n = len(values)
     z = np.sort((values - values.mean()) / values.std(ddof=1))
     below, above = np.log(np.maximum(ndtr(z), 1e-300)), np.log(np.maximum(ndtr(-z[::-1]), 1e-300))

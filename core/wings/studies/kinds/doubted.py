@@ -21,7 +21,7 @@ Doubted: TypeAlias = tuple[DoubtedResult, ...]
 
 
 def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
-    """Select the results, each a label with its doubts, that have any; each label once."""
+    """Select the results that have doubts, reasons why they prove nothing, from pairs of label and doubts."""
     found: dict[str, dict[Doubt, None]] = {}
     for label, doubts in results:
         if doubts:
@@ -30,7 +30,7 @@ def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
 
 
 def doubts_of_study(doubted: Doubted) -> Doubts:
-    """Make the doubt of a study that rests on these results, with the reasons of each; () without any.
+    """Make the doubt of a study that rests on results with doubts, and so proves nothing; () if there are none.
 
     Examples
     --------

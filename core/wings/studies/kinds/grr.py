@@ -68,7 +68,7 @@ class GrrIntervals:
 def intervals(
     squares: Mapping[str, tuple[float, int]], shape: tuple[int, ...], tolerance: float | None, seed: int = 0
 ) -> GrrIntervals:
-    """Compute components and intervals from mean squares.
+    """Compute the variance components of a gauge R&R study and their 95 % intervals from the mean squares.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def intervals(
 
 
 def components(squares: Mapping[str, Array], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Compute the variances by source, each (n,), none below 0, from mean squares (n,)."""
+    """Compute the variance (n,) of each source in a gauge R&R study, none below 0, from mean squares (n,)."""
     _, operators, repeats = shape
     error = squares["error"]
     both = squares.get("interaction", error)
@@ -176,7 +176,7 @@ class Component:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation."""
+        """Standard deviation of this component of the variation."""
         return math.sqrt(self.variance)
 
 
@@ -225,31 +225,31 @@ class GrrStudy:
     doubted: Doubted = ()
 
     def component(self, source: str) -> Component:
-        """Find the component of that name."""
+        """Find the component of the variation whose source is `source`, as "repeatability"."""
         return next(one for one in self.components if one.source == source)
 
     @property
     def pooled(self) -> bool:
-        """Whether the interaction was pooled with the error."""
+        """Whether the interaction of parts and operators was pooled with the error."""
         return bool(self.pooled_anova)
 
     @property
     def categories(self) -> int | None:
-        """Number of distinct categories, a whole number of at least 1; None for a perfect gauge."""
+        """Number of distinct categories ndc, a whole number ≥ 1; None if the gauge has no variation."""
         return None if math.isinf(self.ndc) else max(int(self.ndc), 1)
 
     @property
     def grr(self) -> float:
-        """Value of %GRR for the decision, as a fraction.
+        """%GRR as a fraction, of the tolerance if one is stated, else of the total variation.
 
-        Of T if it is stated, as the parts of a study seldom are the process.
+        The tolerance goes first, as the parts of a study seldom are the process.
         """
         of_all = self.component("gauge R&R")
         return of_all.of_total if of_all.of_tolerance is None else of_all.of_tolerance
 
     @property
     def verdict(self) -> Fitness:
-        """Verdict by %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D).
+        """Verdict by %GRR (AIAG, chapter II-D): acceptable up to 10 %, with reservations up to 30 %, else not.
 
         Not proven where results of measurements prove nothing.
         """
@@ -260,7 +260,7 @@ class GrrStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the figures."""
+        """Notes on the study: results with doubts, pooling, and too few measurements or categories."""
         p, o, r = self.values.shape
         said = [*notes_of(doubts_of_study(self.doubted))]
         if self.pooled:
@@ -283,7 +283,7 @@ def grr_study(
     unit: str = "mm",
     doubted: Doubted = (),
 ) -> GrrStudy:
-    """Analyse a study of every part measured by every operator, each as often.
+    """Analyse a gauge R&R study by analysis of variance; `values` (p, o, r): parts, operators, repeats.
 
     Parameters
     ----------

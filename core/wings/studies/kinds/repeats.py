@@ -73,7 +73,7 @@ class RepeatStudy:
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on the mean by ISO 14253-1; none without limits.
+        """Verdict on the mean of the repeats by ISO 14253-1; `Verdict.NONE` without limits.
 
         Nothing is proven while its uncertainty is not complete, or a repeat is doubted.
         """
@@ -84,13 +84,13 @@ class RepeatStudy:
 
     @property
     def doubts(self) -> Doubts:
-        """Doubts that the mean proves anything."""
+        """Reasons why the mean proves nothing: repeats with doubts, or an incomplete uncertainty; () for none."""
         of_u = () if self.complete else (Doubt.of(note_of("study.scatter_alone")),)
         return (*doubts_of_study(self.doubted), *of_u)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the figures."""
+        """Notes on the study of the repeats."""
         said = notes_of(self.doubts)
         if self.run is not None and self.run.outside:
             names = [self.labels[place] for place in self.run.outside]
@@ -128,7 +128,7 @@ def repeat_study(
     asked: Requirement = Requirement(),
     doubted: Doubted = (),
 ) -> RepeatStudy:
-    """Analyse n ≥ 1 repeats, in the unit of the budget of their mean.
+    """Analyse n ≥ 1 repeated measurements of one quantity, with the uncertainty budget of their mean.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class StatedUncertainty:
 
     @property
     def common(self) -> float:
-        """Uncertainty that all measurements share, √(whole² − own²)."""
+        """Standard uncertainty that all measurements of the series share, √(whole² − own²)."""
         return math.sqrt(max(0.0, self.whole**2 - self.own**2))
 
 
@@ -99,27 +99,27 @@ class SeriesStudy:
 
     @property
     def n(self) -> int:
-        """Number of values."""
+        """Number of values in the series."""
         return len(self.values)
 
     @property
     def points(self) -> int:
-        """Number of points of the chart: whole subgroups, or values."""
+        """Number of points of each control chart: whole subgroups, or single values."""
         return self.n // self.size
 
     @property
     def mean(self) -> float:
-        """Mean of all values."""
+        """Mean of all values of the series."""
         return float(self.values.mean())
 
     @property
     def s(self) -> float:
-        """Standard deviation of all values, over n − 1."""
+        """Standard deviation of all values of the series, over n − 1."""
         return float(self.values.std(ddof=1)) if np.ptp(self.values) else 0.0
 
     @property
     def indices(self) -> dict[str, Index]:
-        """Capability indices Cp, Cpk, Pp and Ppk by their names, as far as they are known."""
+        """Capability indices by name, Cp, Cpk, Pp and Ppk; those that are not known are missing."""
         found: dict[str, Index | None] = {}
         if self.short is not None:
             found |= {"Cp": self.short.p, "Cpk": self.short.pk}
@@ -129,7 +129,7 @@ class SeriesStudy:
 
     @property
     def share_of_u(self) -> tuple[float, float] | None:
-        """Least and largest share of s² that the measurement makes up.
+        """Smallest and largest share of the variance s² that the measurement's uncertainty can account for.
 
         None without stated uncertainty, or if s is 0.
         """
@@ -140,7 +140,7 @@ class SeriesStudy:
 
     @property
     def verdict(self) -> Finding:
-        """Verdict: CAPABLE if Cpk and Ppk are surely LIMIT or more, not capable if one is surely less, at 95 %.
+        """Verdict "capable" if Cpk and Ppk are surely LIMIT or more, "not capable" if one is surely less, at 95 %.
 
         Nothing is proven of a process that left its control limits, nor by values that are too few or doubted.
         """
@@ -155,16 +155,16 @@ class SeriesStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the figures."""
+        """Notes on the study of the series."""
         return (*self._of_charts(), *self._of_capability())
 
     def label_of(self, point: int) -> str:
-        """Make the label of a point of the chart of places: the part, or the first and the last one of its subgroup."""
+        """Return the label of a point of the location chart: its part, or the first and last part of its subgroup."""
         first, last = self.labels[point * self.size], self.labels[(point + 1) * self.size - 1]
         return first if first == last else f"{first} … {last}"
 
     def label_of_spread(self, point: int) -> str:
-        """Make the label of a point of the chart of spreads: as `label_of`, or the two parts of a moving range."""
+        """Return the label of a point of the spread chart: its subgroup, or the two parts of a moving range."""
         return self.label_of(point) if self.size > 1 else f"{self.labels[point]} … {self.labels[point + 1]}"
 
     @property
@@ -233,7 +233,7 @@ def series_study(
     unit: str = "mm",
     doubted: Doubted = (),
 ) -> SeriesStudy:
-    """Analyse n ≥ 2 values in the order of measuring.
+    """Analyse a series of n ≥ 2 values in the order of measuring: control charts and capability indices.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class Chart:
 
     @property
     def breaking(self) -> frozenset[int]:
-        """Places of the points that break a rule."""
+        """Places (from 0) of the points that complete the break of a rule."""
         return frozenset(one.place for one in self.breaks)
 
 
@@ -86,7 +86,7 @@ class SeriesCharts:
 
 
 def western_electric(points: Array, centre: float, sigma: float) -> tuple[Break, ...]:
-    """Find where points (k,) break the rules 1 to 4 about `centre`; `sigma` > 0 is the standard deviation of one.
+    """Find the points (k,) that break a Western Electric rule about `centre`; `sigma` > 0 is the σ of one point.
 
     The point told is the last one of the pattern, and one of those that lie so far out.
     """
@@ -101,7 +101,7 @@ def western_electric(points: Array, centre: float, sigma: float) -> tuple[Break,
 
 
 def single_values(values: Array) -> SeriesCharts:
-    """Make the charts of single values (n,), n ≥ 2, not all the same, and of their moving ranges.
+    """Make the control charts of single values (n,), n ≥ 2, not all equal, and of their moving ranges.
 
     The mean moving range has the relative variance (0.8264 n − 1.082)/(n − 1)², neighbours sharing a value (Cryer,
     Ryan, Journal of Quality Technology 22 (1990) 187–192).
@@ -116,7 +116,7 @@ def single_values(values: Array) -> SeriesCharts:
 
 
 def subgroups(groups: Array) -> SeriesCharts:
-    """Make the charts of the means and the standard deviations of subgroups (g, m), m ≥ 2.
+    """Make the control charts of the means and of the standard deviations of subgroups (g, m), m ≥ 2.
 
     Not each of one value alone.
     """
@@ -130,7 +130,7 @@ def subgroups(groups: Array) -> SeriesCharts:
 
 
 def c4(n: int) -> float:
-    """Compute the mean of the standard deviation of n ≥ 2 normal values over σ."""
+    """Compute c4(n), the expected standard deviation of n ≥ 2 normal values as a share of σ."""
     return math.sqrt(2 / (n - 1)) * math.exp(math.lgamma(n / 2) - math.lgamma((n - 1) / 2))
 
 

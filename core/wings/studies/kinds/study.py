@@ -28,7 +28,7 @@ KINDS: Mapping[str, str] = {
 
 
 def kind_of(study: Study) -> Kind:
-    """Return the key of a study's kind."""
+    """Return the key of a study's kind: "repeats", "type1", "grr", "acceptance" or "series"."""
     match study:
         case RepeatStudy():
             return "repeats"

@@ -85,27 +85,27 @@ class Type1Study:
 
     @property
     def n(self) -> int:
-        """Number of repeats."""
+        """Number of repeats in the study."""
         return len(self.values)
 
     @property
     def dof(self) -> int:
-        """Degrees of freedom of s."""
+        """Degrees of freedom of the standard deviation s, n − 1."""
         return self.n - 1
 
     @property
     def bias_is_significant(self) -> bool:
-        """Whether the t-test finds a bias, at 5 %."""
+        """Whether the t-test finds the bias significant at 5 %."""
         return self.p < SIGNIFICANCE
 
     @property
     def resolution_share(self) -> float | None:
-        """Resolution over T, as a fraction; None if it is not stated."""
+        """Resolution of the gauge as a fraction of T; None if no resolution is stated."""
         return None if self.resolution is None else self.resolution / self.tolerance
 
     @property
     def resolution_suffices(self) -> bool | None:
-        """Whether the resolution is 5 % of T or less; None if it is not stated."""
+        """Whether the resolution is 5 % of T or less; None if no resolution is stated."""
         return None if self.resolution_share is None else self.resolution_share <= RESOLUTION_SHARE * (1 + 1e-9)
 
     @property
@@ -127,7 +127,7 @@ class Type1Study:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the figures."""
+        """Notes on the type-1 study."""
         said = [*notes_of(doubts_of_study(self.doubted))]
         if self.n < FEW_MEASUREMENTS:
             said.append(note_of("study.few_repeats", n=self.n, least=FEW_MEASUREMENTS))
@@ -144,7 +144,7 @@ def type1_study(
     values: Sequence[float], reference: float, tolerance: float, doubted: Doubted = (), *,
     resolution: float | None = None, unit: str = "mm",
 ) -> Type1Study:  # fmt: skip
-    """Analyse n ≥ 2 repeats of a reference part.
+    """Analyse n ≥ 2 repeats of a reference part: bias, Cg and Cgk, against `tolerance`, the full width T.
 
     Parameters
     ----------
