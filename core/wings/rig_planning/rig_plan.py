@@ -92,7 +92,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
 
 
 def write_foretold(foretold: ForetoldRig, folder: Path) -> Mapping[str, Path]:
-    """Write a plan as `write_plan` does, and the rig beside it where it has no file yet; InputError as there."""
+    """Write plan.json and sigma.png of a prediction into `folder`, and a project's rig as planned-rig.toml."""
     files = dict(write_plan(foretold.result, folder))
     if foretold.rig:
         files["rig"] = folder / PLANNED_RIG

@@ -215,7 +215,7 @@ class SeriesStudy:
 
 
 def stated_uncertainty(u: Sequence[float], budgets: Sequence[Sequence[Contribution]]) -> StatedUncertainty:
-    """Combine n measurements with standard uncertainties u (n,) and, where they are known, as many budgets."""
+    """Combine n standard uncertainties `u` to their quadratic mean, and to the part that is each scan's own."""
     own = [row.u_mm**2 for budget in budgets for row in budget if row.source in OF_EACH_SCAN]
     return StatedUncertainty(
         math.sqrt(sum(own) / len(budgets)) if budgets else 0.0, math.sqrt(float(np.mean(np.square(u))))

@@ -130,7 +130,7 @@ def subgroups(groups: Array) -> SeriesCharts:
 
 
 def c4(n: int) -> float:
-    """Compute c4(n), the expected standard deviation of n ≥ 2 normal values as a share of σ."""
+    """Compute the factor c4, the expected standard deviation of n ≥ 2 normal values over σ."""
     return math.sqrt(2 / (n - 1)) * math.exp(math.lgamma(n / 2) - math.lgamma((n - 1) / 2))
 
 
