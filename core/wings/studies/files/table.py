@@ -67,7 +67,7 @@ class Table:
         return tuple(tuple(map(Doubt.named, cell.split())) for cell in cells)
 
     def numbers(self, *names: str) -> tuple[float, ...]:
-        """Read the column that has one of `names` as finite numbers; InputError if it is missing or a cell is not one."""
+        """Read the column that has one of `names` as finite numbers; InputError if it is missing or one is not."""
         name = self._needed(names)
         return tuple(self._number(name, row) for row in range(len(self)))
 
