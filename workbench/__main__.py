@@ -11,7 +11,7 @@ INSTALL = Message(
 
 
 def main() -> int:
-    """Open the workbench, or print what is to be installed first; returns the exit code."""
+    """Open the window, or print what has to be installed first; return the exit code."""
     if find_spec("PySide6") is None:
         sys.stderr.write(f"{INSTALL}.\n")
         return 2

@@ -60,7 +60,7 @@ class Application(QApplication):
 
 
 def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow:
-    """Style the application and build its window, not yet shown.
+    """Apply the theme to the application and build its main window, which is not shown yet.
 
     The style sheet comes last: under one, Qt looks up the rules of all widgets anew each time a part is put into
     another, which takes longer than all the rest.
@@ -76,7 +76,7 @@ def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow
 
 
 def speak(app: QApplication, window: MainWindow, name: str, put: Callable[[], MainWindow]) -> None:
-    """Replace the window by one in another language that shows the same step; `put` builds and shows it.
+    """Replace the window by one in the language `name` at the same step; `put` builds and shows the new window.
 
     All texts are told when a widget is made, so it is the widgets that are made anew; project, undo, processes and
     messages are not the window's and stay.
@@ -98,7 +98,7 @@ def speak(app: QApplication, window: MainWindow, name: str, put: Callable[[], Ma
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Open the workbench; returns the exit code."""
+    """Open the window as the command line `argv` asks (None: the program's own); return the exit code."""
     parser = argparse.ArgumentParser("trisect-workbench", description=tr("The Trisect inspection workbench."))
     parser.add_argument("path", nargs="?", type=Path, help=tr("a project or a recording set to open"))
     parser.add_argument("--theme", choices=THEMES, default="", help=tr("light, dark, or as the system is set"))
@@ -153,7 +153,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def remove_cache_before_signals_end(app: QCoreApplication) -> None:
-    """Remove the temporary folder of saved code before a signal ends the program.
+    """Install signal handlers that remove the temporary folder of compiled code before the program ends.
 
     Python hears of a signal once it runs: a socket wakes it where Qt waits.
     """

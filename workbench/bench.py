@@ -46,15 +46,15 @@ class Bench:
 
     @property
     def cannot_write(self) -> str:
-        """Reason why nothing can be measured into the open project, or ""."""
+        """Reason why nothing can be measured into the open project; "" if it can."""
         return tr("The project is read-only: go on in a copy (File, Save a copy).") if self.model.is_read_only else ""
 
     def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
-        """Run a long job, as `Lane.run`; the status bar shows its progress, a notice its error."""
+        """Run a long `job(*args)` in the worker process, its progress in the status bar; a notice shows an error."""
         return self._run(self.measuring, receiver, job, *args, label=label, **more)
 
     def run_quick(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
-        """Run a short job whose result is shown at once, as `Lane.run`; a notice shows its error."""
+        """Run a short `job(*args)` in a process of its own, so that it need not wait; a notice shows an error."""
         return self._run(self.quick, receiver, job, *args, label=label, **more)
 
     def _run(
@@ -77,18 +77,18 @@ class Bench:
         return lane.run(receiver, job, *args, on_failed=failed, **more)
 
     def close(self) -> None:
-        """End all processes, without waiting for them."""
+        """Kill all worker processes, without waiting until they are gone."""
         for lane in (self.measuring, self.quick, self.live):
             lane.close()
 
     def wait_until_closed(self) -> None:
-        """Wait until ended processes are gone: after the event loop has ended."""
+        """Wait until all killed worker processes are gone; call it after the event loop has ended."""
         for lane in (self.measuring, self.quick, self.live):
             lane.wait_until_closed()
 
 
 def make_bench(settings: AppSettings | None = None) -> Bench:
-    """Make a bench with lanes that are started when first used."""
+    """Make the bench: project, settings, notices, and worker processes that start when first needed."""
     measuring = (jobs.MEASURE_SCAN,)
     return Bench(
         ProjectModel(),

@@ -106,7 +106,7 @@ WAIT = label("Wait a moment: the bar at the bottom says how far it is.")
 
 
 def instruction(facts: Facts) -> Instruction:
-    """Choose the next instruction: the first thing that is not done as the project stands."""
+    """Choose the next instruction of the first measurement: the first thing that is not done yet."""
     begun = facts.solved or any(facts.states[step] is State.DONE for step in ("camera", "planes", "scan"))
     if facts.page == "project" and not begun and not facts.running:
         return PROJECT

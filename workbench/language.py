@@ -77,7 +77,7 @@ FONTS = {
 
 
 def choose(language: Language, parent: QObject) -> None:
-    """Set the language of windows that are built from now on; what is shown already stays as it is."""
+    """Set the language of all windows built from now on; windows that exist keep their language."""
     global _chosen, _of_qt
     _chosen = _for_the_window(language)
     if _of_qt is not None:
@@ -100,27 +100,27 @@ def _write_as(name: str) -> None:
 
 
 def chosen() -> Language:
-    """Return the language of the window."""
+    """Return the language in which the window is written."""
     return _chosen
 
 
 def language_name() -> str:
-    """Return the name of the chosen language."""
+    """Return the name of the window's language, as "de"."""
     return _chosen.name
 
 
 def printed() -> str:
-    """Return the name of the language of reports that state none."""
+    """Return the name of the language of reports for which none is chosen: the window's, or "en" if it has none."""
     return language_name() if language_name() in languages() else "en"
 
 
 def tr(english: str, /, **values: Any) -> str:
-    """Translate fixed words of the window, with values in their places: `tr("{n} of {m} frames", n=3, m=5)`."""
+    """Translate fixed English words, with `values` in their places: `tr("{n} of {m} frames", n=3, m=5)`."""
     return _chosen.label(english, **values)
 
 
 def text_of(message: Message | Exception | Failure | str) -> str:
-    """Translate a message of core or an error of a job into the window's language; anything else stays as it is."""
+    """Translate a message, an error or a failure of a job into the window's language; any other text stays as it is."""
     if isinstance(message, Failure):
         if message.kind == ENDED:
             return tr("The process that does this ended unexpectedly. What was recorded and measured before is kept.")
@@ -133,28 +133,28 @@ def text_of(message: Message | Exception | Failure | str) -> str:
 
 
 def joined(texts: Iterable[str], how: str = "") -> str:
-    """Join several texts in the window's language: `how` is ";" for parts that contain commas, "and"."""
+    """Join texts to a list in the window's language: by commas, or with `how` ";" or "and"."""
     return _chosen.joined(list(texts), how)
 
 
 def sentences(*texts: str) -> str:
-    """Join sentences, without empty ones: after a Chinese full stop there is no space."""
+    """Join sentences to one text in the window's language; empty ones are left out."""
     row = " ".join(filter(None, texts))
     return row.replace("。 ", "。")
 
 
 def sentence(text: str) -> str:
-    """End a text with the full stop of the window's language."""
+    """Add the full stop of the window's language to a text."""
     return _chosen(Message("input.what", "{what}.", what=capital(text)))
 
 
 def named(name: str, text: str) -> str:
-    """Put a name and the colon of the window's language before a text."""
+    """Write a name, the colon of the window's language, and a text."""
     return tr("{name}: {value}", name=name, value=text)
 
 
 def numeral(digits: str) -> str:
-    """Convert digits as Python writes them to the decimal sign of the window's language and a true minus."""
+    """Convert a number written by Python to the window's decimal sign and a true minus sign."""
     return _chosen.numeral(digits)
 
 
@@ -164,5 +164,5 @@ def time_of(at: datetime, *, seconds: bool = False) -> str:
 
 
 def number(value: float, spec: str = "") -> str:
-    """Format a number in the window's language."""
+    """Format a number by the format `spec` in the window's language."""
     return _chosen.number(value, spec)

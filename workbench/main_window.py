@@ -152,11 +152,11 @@ class MainWindow(QMainWindow):
 
     @property
     def current(self) -> str:
-        """Name of the step shown, or "" on the welcome page."""
+        """Name of the step whose page is shown; "" on the welcome page."""
         return self._current
 
     def go_to(self, name: str) -> None:
-        """Show the page of a step."""
+        """Show the page of the step called `name`."""
         if not self.model.is_open or name == self._current:
             return
         if self._current:
@@ -173,7 +173,7 @@ class MainWindow(QMainWindow):
         self._refresh()
 
     def go(self, by: int) -> None:
-        """Go back (−1) or to the next step (1)."""
+        """Show the page of the step before (−1) or after (1) the current one, if that is possible."""
         names = [step.name for step in STEPS]
         if not self._current:
             return
@@ -182,20 +182,20 @@ class MainWindow(QMainWindow):
             self.go_to(names[place])
 
     def enter_operator_mode(self) -> None:
-        """Enter the operator mode with its four buttons; changes are saved before."""
+        """Save the project, and show the page of the operator mode with its four buttons."""
         if self.model.is_open and not self.operator_mode.on and (self.model.is_read_only or self.projects.save()):
             self.messages.hide()
             self.operator_mode.turn(True)
             self._show_mode()
 
     def leave_operator_mode(self) -> None:
-        """Return to all pages; where people have roles, only for those who may change something."""
+        """Leave the operator mode for all pages; if people have roles, only after an inspector's PIN."""
         if self.operator_mode.on and self.projects.may_leave_operator_mode():
             self.operator_mode.turn(False)
             self._show_mode()
 
     def presenter_action(self, name: str, page: str = "") -> None:
-        """Call the action of a shortcut ("run", "accept", "live", "capture") on a page, by default the current one."""
+        """Run the action of a shortcut, "run", "accept", "live" or "capture", on a page; "" is the current one."""
         action = getattr(self.presenters.get(page or self._current), f"do_{name}", None)
         if action is not None:
             action()
@@ -213,17 +213,17 @@ class MainWindow(QMainWindow):
             apply_theme(app, name)
 
     def follow_system(self, *_: Any) -> None:
-        """Apply the theme anew: the system has changed between light and dark."""
+        """Apply the theme again, because the system has changed between light and dark."""
         self.apply_theme(self.bench.settings.theme)
 
     def leave(self) -> bool:
-        """Ask what must be asked, stop what runs, save, and close; False if the window stays, or is closed later."""
+        """Ask about unsaved work, stop what runs, save, and close; False if the window does not close now."""
         if not self._left:
             self.projects.leave(self._leave_now)
         return self._left
 
     def dismiss(self) -> None:
-        """Close for another window to replace this one: the project stays open."""
+        """Close this window, which another one replaces; the project stays open."""
         self._left = True
         self._close_pages()
         for presenter in self.presenters.values():
@@ -253,7 +253,7 @@ class MainWindow(QMainWindow):
         self._layout_of_screen.rest()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Close once `leave` has agreed; it asks in the next turn, as no question may appear within this event."""
+        """Close the window once `leave` has agreed; its questions are asked after this event."""
         event.setAccepted(self._left)
         if not self._left:
             QTimer.singleShot(0, self, self.leave)

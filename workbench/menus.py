@@ -102,7 +102,7 @@ class MenuFacts(NamedTuple):
 
 
 def why_not(name: str, facts: MenuFacts, *, needs_project: bool = False) -> str:
-    """Give the reason why an entry, by its name, cannot be chosen now: a sentence, or "".
+    """Return the reason why the menu entry called `name` cannot be chosen now; "" if it can.
 
     `needs_project`: also where it is none of NEED_A_PROJECT.
     """
@@ -164,7 +164,7 @@ class Menus(QObject):
         self.refresh(MenuFacts("", frozenset(), job=False))
 
     def refresh(self, facts: MenuFacts) -> None:
-        """Disable the entries that make no sense now, with the reason as tip."""
+        """Enable each menu entry, or disable it with the reason in its tooltip."""
         needing = {entry.name for entry in self._brought if entry.needs_project}
         for name, action in self.actions.items():
             if name in UNDOING:  # greyed by the stack; hidden, its key means nothing

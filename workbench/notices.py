@@ -64,7 +64,7 @@ class Notices(QObject):
         self._restore: list[Callable[[], object]] = []
 
     def add(self, level: Level, text: str, details: str = "", *, job: str = "") -> None:
-        """Add a notice; call in the GUI thread only."""
+        """Add a notice with its level, text and details for copying; call it in the GUI thread only."""
         notice = Notice(level, text, details, job=job)
         self.all.append(notice)
         del self.all[:-KEPT]
@@ -72,29 +72,29 @@ class Notices(QObject):
         self.added.emit(notice)
 
     def info(self, text: str, details: str = "") -> None:
-        """Add a notice of something that is good to know."""
+        """Add a notice of the level "info": something that is good to know."""
         self.add(Level.INFO, text, details)
 
     def warning(self, text: str, details: str = "") -> None:
-        """Add a notice of something to look at."""
+        """Add a notice of the level "warning": something to look at."""
         self.add(Level.WARNING, text, details)
 
     def error(self, text: str, details: str = "") -> None:
-        """Add a notice of something that stopped a job."""
+        """Add a notice of the level "error": something has stopped a job."""
         self.add(Level.ERROR, text, details)
 
     def failed(self, problem: Exception | Failure, job: str = "") -> None:
-        """Add a notice of the error that stopped a job, as it was raised."""
+        """Add a notice of the error that stopped a job; `job` is the name of that job."""
         self.add(Level.ERROR, text_of(problem), problem.details if isinstance(problem, Failure) else "", job=job)
 
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
-        """Show an uncaught exception of any thread in one notice; the program goes on."""
+        """Add a notice of an exception that no code caught, of any thread; the program goes on."""
         details = "".join(traceback.format_exception(kind, value, trace))
         text = tr("Something went wrong in the program; your work is kept. Details: {details}", details=kind.__name__)
         self._raised.emit(Level.ERROR, text, details)
 
     def catch_everything(self) -> None:
-        """Route uncaught exceptions of all threads and Qt's warnings here until `release`."""
+        """Show uncaught exceptions of all threads and Qt's warnings as notices, until `release`."""
         if self._restore:
             return
         before = sys.excepthook, threading.excepthook, sys.unraisablehook
@@ -114,13 +114,13 @@ class Notices(QObject):
         self._restore.append(restore)
 
     def release(self) -> None:
-        """Restore the hooks that were there before."""
+        """Restore the exception and message handlers that `catch_everything` replaced."""
         while self._restore:
             self._restore.pop()()
 
 
 def log_to_file(folder: Path | None = None) -> Path | None:
-    """Write the log to a file of the user's log folder, a few megabytes at most; None where nothing can be written."""
+    """Write the log to a file of limited size in the user's log folder; return it, or None if that is impossible."""
     folder = folder or Path(platformdirs.user_log_dir("trisect", appauthor=False))
     try:
         folder.mkdir(parents=True, exist_ok=True)

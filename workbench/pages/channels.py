@@ -10,7 +10,7 @@ from workbench.views.forms.form import SettingsForm
 
 
 def add_channel(form: SettingsForm) -> None:
-    """Add the choice "channel" to a form; "" is the best channel of the pictures."""
+    """Add the field "channel" to a form: in which colour channel the laser is looked for; "" is automatic."""
     choices = [("", tr("Found automatically")), *((name, capital(text_of(CHANNEL_NAMES[name]))) for name in CHANNELS)]
     form.add_choice(
         "channel", tr("Colour"), choices,

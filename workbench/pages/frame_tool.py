@@ -25,7 +25,7 @@ class FrameTool(QObject):
         self._refresh()
 
     def show(self, part: ViewFrame | None) -> None:
-        """Set the part's own frame; None where it is not known."""
+        """Set the part's own frame, which the button offers; None if it is not known."""
         self._part = part
         self._refresh()
 

@@ -30,24 +30,24 @@ class Acceptance(QObject):
 
     @property
     def accepted(self) -> str:
-        """Id of the accepted calibration, or ""."""
+        """Id of the calibration of this step that the project has accepted; "" for none."""
         return str(getattr(self._model.project.accepted, self._step))
 
     @property
     def label(self) -> str:
-        """Name of the job that stores a calibration."""
+        """Name of the job that stores a calibration, in the window's language."""
         return self._words()[2]
 
     def is_rejected(self, id_: str) -> bool:
-        """Whether this calibration is rejected."""
+        """Whether the calibration with this id is rejected in the project."""
         return id_ in self._model.project.rejected
 
     def forget(self) -> None:
-        """Forget all: another project is open."""
+        """Reset, as another project is open: no calibration is being stored."""
         self.keeping = False
 
     def accept(self, *made: Any) -> None:
-        """Store a calibration and measure with it from now on; `made` are the arguments of storing it."""
+        """Store a calibration in the project and accept it; `made` are the arguments of the job that stores it."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.keeping:
             return
@@ -77,7 +77,7 @@ class Acceptance(QObject):
         )
 
     def reject(self, id_: str) -> None:
-        """Reject this calibration."""
+        """Mark the calibration with this id as rejected in the project."""
         now = self._model.project
         after = self._with(now, "") if id_ == self.accepted else now
         self._model.edit(self._words()[1], replace(after, rejected=now.rejected | {id_}))

@@ -32,7 +32,7 @@ class CalibrationCard(StageCard):
         )
 
     def refresh(self) -> None:
-        """Show the stage."""
+        """Show how far the calibration is, and the buttons of what can be done next."""
         p = self._presenter
         stage: Stage = p.stage
         same = {

@@ -29,28 +29,28 @@ class CurrentPicture(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Choose no picture."""
+        """Reset: no picture is current."""
         self.current = ""
         self._read: tuple[Any, ...] = ()
 
     def again(self) -> None:
-        """Read the current picture again."""
+        """Read the current picture from its file again."""
         self._read = ()
         self.refresh()
 
     def names(self) -> Sequence[str]:
-        """List the names of the pictures."""
+        """List the names of the calibration's pictures."""
         return [self._work.name_of(path) for path in self._work.pictures or ()]
 
     def follow(self) -> None:
-        """Follow a change of pictures or calibration; choose the first picture where the current one is gone."""
+        """Keep the current picture while it exists, else choose the first one; then read it."""
         names = self.names()
         if self.current not in names:
             self.current = names[0] if names else ""
         self.refresh()
 
     def refresh(self) -> None:
-        """Read the current picture."""
+        """Read the current picture in the background, unless it is read already."""
         name = self.current
         path = next((path for path in self._work.pictures or () if self._work.name_of(path) == name), None)
         if not name or path is None or self._read == (name,):

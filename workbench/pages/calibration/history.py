@@ -37,12 +37,12 @@ class StoredCalibrations(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Clear the list."""
+        """Clear the list of stored calibrations."""
         self.entries: tuple[Any, ...] = ()
         self.chosen = ""
 
     def refresh(self) -> None:
-        """Read the list again."""
+        """Read the list of stored calibrations from the project again, in the background."""
         folder = self._model.folder
         if folder is None:
             return
@@ -61,7 +61,7 @@ class StoredCalibrations(QObject):
         )
 
     def choose(self, id_: str) -> None:
-        """Choose the calibration of this id."""
+        """Choose the stored calibration with this id."""
         if id_ != self.chosen:
             self.chosen = id_
             self._choice_changed()
@@ -69,11 +69,11 @@ class StoredCalibrations(QObject):
 
     @property
     def accepted(self) -> str:
-        """Id of the accepted calibration, or ""."""
+        """Id of the calibration that is accepted; "" for none."""
         return self._acceptance.accepted
 
     def why_not_restore(self) -> str:
-        """Give the reason why the chosen one cannot be accepted again, or ""."""
+        """Return the reason why the chosen calibration cannot be accepted again; "" if it can."""
         entry = next((entry for entry in self.entries if entry.id == self.chosen), None)
         job = self._bench.measuring.current
         running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
@@ -101,7 +101,7 @@ class StoredCalibrations(QObject):
         """What is missing, where that is this step's own."""
 
     def restore(self) -> None:
-        """Accept the chosen one again; undoable."""
+        """Accept the chosen stored calibration again; undoable."""
         if not self.why_not_restore():
             self._accept(self.chosen, self._labels()[1])
 
@@ -133,7 +133,7 @@ class CameraHistory(StoredCalibrations):
         return tr("Reading the history"), tr("restore a camera calibration")
 
     def shown_is(self, calibration: CameraCalibration | None) -> None:
-        """Set the calibration that is shown, with which others are compared."""
+        """Set the camera calibration that the chosen one is compared with; None for none."""
         if calibration is not self._shown:
             self._shown = calibration
             if self.chosen:
@@ -141,7 +141,7 @@ class CameraHistory(StoredCalibrations):
                 self.changed.emit()
 
     def why_not_import(self) -> str:
-        """Give the reason why no calibration of another program can be imported now, or ""."""
+        """Return the reason why no camera of another program can be imported now; "" if it can."""
         job = self._bench.measuring.current
         running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
         if self._live.running:
@@ -149,7 +149,7 @@ class CameraHistory(StoredCalibrations):
         return tr("A job is not finished yet: {job}.", job=running) if running else self._bench.cannot_write
 
     def take(self, path: Path) -> None:
-        """Accept a camera that OpenCV or ROS has calibrated; undoable."""
+        """Import and accept the camera that OpenCV or ROS has written to a file; undoable."""
         folder = self._model.folder
         if folder is None or self.why_not_import():
             return

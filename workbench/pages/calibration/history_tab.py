@@ -44,7 +44,7 @@ class HistoryTab(QWidget):
         return ""
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the list of stored calibrations, the text on the chosen one, and its button."""
         history = self._presenter.history
         listed = self._listed(history.entries, history.accepted)
         if listed != self._shown:

@@ -249,9 +249,9 @@ class Result(QWidget):
 
     @abstractmethod
     def refresh(self) -> bool:
-        """Show the calibration; returns whether there is anything to show."""
+        """Show the quality of the calibration; return False if there is no calibration."""
 
 
 def known(value: float) -> float | None:
-    """Return None for NaN, else the value."""
+    """Return `value`, or None if it is NaN."""
     return None if math.isnan(value) else value

@@ -65,7 +65,7 @@ class PictureTab(QWidget):
     # ---- the same
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the current picture with what was found in it, or the state of the live source."""
         p, live = self._presenter, self._presenter.live
         self.hints.setVisible(live.running)
         self.line.setVisible(not live.running and bool(p.current))

@@ -66,7 +66,7 @@ class CalibrationPresenter(StepPresenter):
     @property
     @abstractmethod
     def candidate(self) -> str:
-        """Id of the calibration that is shown, or ""."""
+        """Id of the calibration that is shown, accepted or not; "" for none."""
 
     @abstractmethod
     def _is_current(self) -> bool:
@@ -94,22 +94,22 @@ class CalibrationPresenter(StepPresenter):
 
     @abstractmethod
     def views(self) -> tuple[Any, ...]:
-        """List the views (or poses) as the calibration shown judges them."""
+        """List the views or poses with the quality that the calibration shown gives them."""
 
     @abstractmethod
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """List the views found in the pictures, without those left out by hand."""
+        """List the targets found in the pictures, without pictures left out by hand."""
 
     # ---- state
 
     @property
     def current(self) -> str:
-        """Name of the current picture."""
+        """Name of the picture that is looked at; "" for none."""
         return self.look.current
 
     @property
     def stage(self) -> Stage:
-        """Stage of the calibration."""
+        """How far the calibration is: no pictures, searching, solved, accepted, …."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -133,7 +133,7 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def is_done(self) -> bool:
-        """Whether the step is done, and nothing it rests on has changed since."""
+        """Whether a calibration is accepted, and nothing it depends on has changed since."""
         return self.state.state is State.DONE
 
     def blocker(self) -> str:
@@ -141,12 +141,12 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def cannot_search(self) -> str:
-        """Reason why the pictures cannot be searched now, or ""."""
+        """Reason why the target cannot be searched in the pictures now; "" if it can."""
         return self._sentence(disabled_reasons(self._facts()).run)
 
     @property
     def cannot_accept(self) -> str:
-        """Reason why nothing can be accepted now, or ""."""
+        """Reason why the calibration cannot be accepted now; "" if it can."""
         return self._sentence(disabled_reasons(self._facts()).accept)
 
     @property
@@ -159,7 +159,7 @@ class CalibrationPresenter(StepPresenter):
 
     @property
     def cannot_reject(self) -> str:
-        """Reason why nothing can be rejected now, or ""."""
+        """Reason why the calibration cannot be rejected now; "" if it can."""
         return self._sentence(disabled_reasons(self._facts()).reject)
 
     def _sentence(self, why: WhyNot) -> str:
@@ -180,37 +180,37 @@ class CalibrationPresenter(StepPresenter):
     # ---- pictures
 
     def choose(self, name: str) -> None:
-        """Choose this picture as the current one."""
+        """Show the picture called `name`."""
         if name != self.current:
             self.look.current = name
             self.look.refresh()
             self.changed.emit()
 
     def quality_of(self, name: str) -> Any:
-        """Return a view as the calibration shown judges it; None if it is not among them."""
+        """Return the view or pose called `name` with its quality; None if the calibration has none."""
         return next((view for view in self.views() if view.name == name), None)
 
     def short(self, name: str) -> str:
-        """Return the name of a picture within its folder."""
+        """Return the name of a picture without the folder of its step: "view03.png"."""
         return name.removeprefix(f"{self.step}/")
 
     def stored(self, name: str) -> str:
-        """Return the name of a picture in the project."""
+        """Return the name of a picture with the folder of its step: "camera/view03.png"."""
         return f"{self.step}/{self.short(name)}"
 
     @property
     def folder(self) -> Path | None:
-        """Folder of the pictures."""
+        """Folder of the step's pictures; None if none is chosen."""
         return folder_of(self.model, self.step)
 
     def use_folder(self, folder: Path) -> None:
-        """Use the pictures of a folder, and search them."""
+        """Make `folder` the source of the step's pictures, and search the target in them."""
         self.live.stop()
         put_source(self.model, self.step, folder, self._source_label())
         self.work.search()
 
     def set_used(self, names: Sequence[str], used: bool) -> None:
-        """Use pictures, or leave them out; undoable. While they are taken live, put them aside."""
+        """Use the pictures called `names`, or leave them out; undoable. Live ones are discarded."""
         if self.live.running:
             if not used:
                 for name in names:
@@ -241,20 +241,20 @@ class CalibrationPresenter(StepPresenter):
             self.acceptance.reject(self.candidate)
 
     def do_run(self) -> None:
-        """Search the pictures, then solve."""
+        """Search the target in all pictures, then solve the calibration; called by shortcut."""
         if not self.cannot_search:
             self.work.search()
 
     def do_accept(self) -> None:
-        """Accept the calibration that is shown, by shortcut."""
+        """Accept the calibration that is shown; called by shortcut."""
         self.accept()
 
     def do_live(self) -> None:
-        """Start the live source, or stop it."""
+        """Start the live source, or stop it; called by shortcut."""
         self.live.toggle()
 
     def do_capture(self) -> None:
-        """Take this picture, by shortcut."""
+        """Take the live picture; called by shortcut."""
         self.live.capture()
 
     # ---- what happens elsewhere

@@ -110,7 +110,7 @@ class RestoreFacts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """Derive the stage from the facts."""
+    """Derive how far a calibration is (`Stage`) from what is known of its pictures and results."""
     if facts.live:
         return Stage.LIVE
     if facts.searching:
@@ -133,12 +133,12 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def disabled_reasons(facts: Facts) -> Buttons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why the buttons run, accept and reject are disabled; "" for each that is enabled."""
     return Buttons(_run(facts), _accept(facts), _reject(facts))
 
 
 def why_not_restore(facts: RestoreFacts) -> WhyNotRestore:
-    """Give the reason why the chosen one cannot be restored.
+    """Return the reason why the chosen stored calibration cannot be accepted again; `WhyNotRestore` "" if it can.
 
     Reasons in the choice come first, as waiting does not help there.
     """

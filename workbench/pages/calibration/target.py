@@ -22,7 +22,7 @@ PAPERS = ("A4", "A3", "A2", "Letter", "Tabloid")
 
 
 def values_of(target: Target) -> dict[str, Any]:
-    """Return the fields of a target that it has."""
+    """Convert a calibration target to the fields of the form: kind, columns, rows, sizes."""
     match target:
         case Checkerboard():
             return {
@@ -53,7 +53,7 @@ def values_of(target: Target) -> dict[str, Any]:
 
 
 def target_of(values: Mapping[str, Any]) -> Target:
-    """Make the target of these fields; ValueError with one sentence if there is none like that."""
+    """Convert the fields of the form to a calibration target; ValueError, a sentence, if there is no such target."""
     columns, rows, size = int(values.get("columns", 0)), int(values.get("rows", 0)), float(values["size_mm"])
     match values["kind"]:
         case "checkerboard":
@@ -68,7 +68,7 @@ def target_of(values: Mapping[str, Any]) -> Target:
 
 
 def changed_target(target: Target, field: str, value: Any) -> Target:
-    """Change one field of the target; another kind gets its default sizes. ValueError as `target_of`."""
+    """Change one field of a target; for another "kind", usual sizes. ValueError if there is no such target."""
     values = values_of(target)
     if field != "kind":
         return target_of({**values, field: value})
@@ -90,7 +90,7 @@ USUAL_U = 0.5
 
 
 def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
-    """Return a target's tolerance as fields of a form; "made" is "" where nothing is stated, "stated" of own values."""
+    """Convert a target's tolerance to the fields of the form; "made" is "" if nothing is stated."""
     usual = next((name for name, one in MADE.items() if one == tolerance), "stated")
     scale = tolerance.scale_sd
     return {
@@ -101,7 +101,7 @@ def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
 
 
 def changed_tolerance(tolerance: BoardTolerance, field: str, value: Any) -> BoardTolerance:
-    """Change one of MADE_FIELDS of the tolerance; "made" sets both others, except for "stated"."""
+    """Change one field of a target's tolerance: "made", the size's error in ‰, or the flatness in mm."""
     match field:
         case "made":
             return tolerance if value == "stated" else MADE.get(value, BoardTolerance())
@@ -125,12 +125,12 @@ class TargetChoice(QObject):
 
     @property
     def target(self) -> Target:
-        """Target of the project."""
+        """Calibration target of this step in the project."""
         target: Target = getattr(self._model.project.rig, self._which)
         return target
 
     def target_values(self) -> dict[str, Any]:
-        """Return the target as the fields of a form."""
+        """Return the target and its tolerance as the fields of the form."""
         rig = self._model.project.rig
         values = values_of(self.target) | values_of_tolerance(getattr(rig, self._board))
         if self._which != "plane_target":
@@ -139,7 +139,7 @@ class TargetChoice(QObject):
         return values | {"margin_mm": rig.plane_margin_mm} | warm
 
     def set_target(self, field: str, value: Any) -> None:
-        """Change one field; undoable. What cannot be is refused with a sentence. Another kind is another plate."""
+        """Change one field of the target or its tolerance; undoable. `target_refused` says why if impossible."""
         try:
             changed = self._changed(field, value)
         except ValueError as error:
@@ -151,7 +151,7 @@ class TargetChoice(QObject):
         self._model.edit(self._label, after, f"{self._which} {field}")
 
     def take_counted(self, columns: int, rows: int) -> None:
-        """Set columns and rows to those found in the pictures; undoable."""
+        """Set the target's columns and rows to those counted in the pictures; undoable."""
         target = changed_target(changed_target(self.target, "columns", columns), "rows", rows)
         changed: dict[str, Any] = {self._which: target}
         project = self._model.project
@@ -189,7 +189,7 @@ class TargetChoice(QObject):
         return replace(part, target=warm)
 
     def print_target(self, path: Path, paper: str) -> None:
-        """Write the target to scale as a PDF."""
+        """Write a PDF with the target to scale on `paper` to `path`, in the background."""
         self._bench.run_quick(
             self,
             jobs.TARGET_SHEET,

@@ -59,7 +59,7 @@ class TargetPanel(QWidget):
         self.form.set_complaint(field, why)
 
     def refresh(self) -> None:
-        """Show the target."""
+        """Show the fields of the target and its tolerance."""
         values = self._presenter.target_values()
         if values["kind"] != self._kind:
             self._build(values["kind"])
@@ -180,7 +180,7 @@ class TargetPanel(QWidget):
 
 
 def kind_in_words(kind: str) -> str:
-    """Return the displayed name of a kind of target."""
+    """Return the name of a kind of target, as "charuco", in the window's language."""
     return {
         "checkerboard": tr("Checkerboard"),
         "charuco": tr("ChArUco board"),

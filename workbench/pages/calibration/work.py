@@ -51,14 +51,14 @@ class StepPictures(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Forget all: another project is open."""
+        """Drop the list of pictures and thumbnails, as another project is open."""
         self.paths: tuple[Path, ...] | None = None
         self.thumbnails: dict[str, Any] = {}
         self._listed = self._thumbnails_of = ""
         self._told: set[str] = set()
 
     def follow(self) -> None:
-        """List the pictures of the changed project, unless that was done."""
+        """List the step's pictures in the background, unless the list is of this project's state already."""
         project, folder = self._model.project, folder_of(self._model, self._step)
         of = f"{getattr(project.sources, self._step)}|{project.rig.channel_of(self._step)}|{project.rig.mosaic}"
         if of == self._listed:
@@ -88,7 +88,7 @@ class StepPictures(QObject):
                 self._bench.notices.warning(told)
 
     def list_again(self) -> None:
-        """List the folder again; what is shown stays until that is done."""
+        """List the pictures in the folder again; the old list stays until the new one is ready."""
         self._listed = ""
         self.follow()
 
@@ -155,7 +155,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
     @staticmethod
     @abstractmethod
     def name_of(path: Path) -> str:
-        """Return the name of a picture in the project; "" for one that belongs to another."""
+        """Return the name in the project of the picture at `path`; "" for the second picture of a pose."""
 
     @abstractmethod
     def _recall(self, folder: Path, project: Project) -> None:
@@ -171,7 +171,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
 
     @abstractmethod
     def left_out(self) -> dict[str, Message]:
-        """Return the pictures in which nothing usable was found, by name, with the reason."""
+        """Return the reason, by picture name, why a picture shows nothing usable."""
 
     def _in_words(self, problem: Any) -> str:
         return text_of(problem)
@@ -181,21 +181,21 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
 
     @property
     def pictures(self) -> tuple[Path, ...] | None:
-        """Pictures of the step; None until they are listed."""
+        """Paths of the step's pictures; None until they are listed."""
         return self._pictures.paths
 
     @property
     def thumbnails(self) -> dict[str, Any]:
-        """Small pictures by name."""
+        """Thumbnails of the step's pictures, by picture name."""
         return self._pictures.thumbnails
 
     @property
     def searching(self) -> bool:
-        """Whether the pictures are being searched."""
+        """Whether the target is being searched in the pictures."""
         return self.search_task is not None
 
     def opened(self) -> None:
-        """Load another project: list its pictures, and read what has been found in them."""
+        """Drop all results, list the pictures of the project now open, and read its earlier results."""
         if self.search_task is not None:
             self.search_task.cancel()
         self._forget()
@@ -204,13 +204,13 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
             self.recall()
 
     def recall(self) -> None:
-        """Read what was found in the pictures and solved before, unless it is known or being read."""
+        """Read earlier results of the search from the project, unless they are known or being read."""
         folder, project = self._model.folder, self._model.project
         if folder is not None and self.found is None and not self.searching:
             self._recall(folder, project)
 
     def follow(self) -> None:
-        """Show what is known for the changed project, and solve again if the content of its pictures is known."""
+        """Show the results that are known for the changed project, and solve again if the search is done."""
         project = self._model.project
         self._pictures.follow()
         found, solve = self.found_key(project), self.solve_key(project)
@@ -228,7 +228,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.changed.emit()
 
     def search(self) -> None:
-        """Search all pictures, then solve."""
+        """Search the target in all pictures in the background, then solve the calibration."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.searching or not self._can_search(project):
             return
@@ -247,12 +247,12 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.changed.emit()
 
     def found_key(self, project: Project) -> Key:
-        """Return the key of all that finding rests on in `project`."""
+        """Return a key of all inputs of the search in `project`: equal keys give equal results."""
         keys = inputs_of(self.STEP, project, {})
         return tuple(keys.get(name, "") for name in FOUND_BY[self.STEP])
 
     def solve_key(self, project: Project) -> Key:
-        """Return the key of all that solving rests on in `project`; it begins with `found_key`."""
+        """Return a key of all inputs of the solution in `project`: equal keys give equal results."""
         keys = inputs_of(self.STEP, project, {})
         known = (*FOUND_BY[self.STEP], ACCEPTED[self.STEP])
         others = [value for name, value in keys.items() if name not in known]

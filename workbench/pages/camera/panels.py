@@ -85,5 +85,5 @@ class CameraModelForm(SettingsForm):
         self.edited.connect(presenter.set_model)
 
     def refresh(self) -> None:
-        """Show the settings."""
+        """Show which camera parameters are free, and how outliers are treated."""
         self.set_values(self._presenter.model_values())

@@ -51,7 +51,7 @@ class CameraPresenter(CalibrationPresenter):
 
     @property
     def candidate(self) -> str:
-        """Id of the calibration that is shown, or ""."""
+        """Id of the camera calibration that is shown; "" for none."""
         calibration = self.work.calibration
         return camera_id(calibration.camera) if calibration is not None else ""
 
@@ -88,13 +88,11 @@ class CameraPresenter(CalibrationPresenter):
 
     @property
     def counted(self) -> tuple[int, int] | None:
-        """Columns and rows of the board that is found instead of the one entered; None if there is none such."""
+        """Columns and rows of the board seen in the pictures if they differ from the target entered; else None."""
         return self._counted if self.live.running else self.work.counted
 
     def take_counted(self) -> None:
-        """Set the target to the one found; undoable. Live it is looked for at once, else the pictures are searched
-        again.
-        """
+        """Set the target's columns and rows to those counted in the pictures, and search again; undoable."""
         counted = self.counted
         if counted is not None:
             self.target.take_counted(*counted)
@@ -103,22 +101,22 @@ class CameraPresenter(CalibrationPresenter):
     # ---- what is solved for
 
     def model_values(self) -> dict[str, Any]:
-        """Return which parameters are free, and how outliers are treated."""
+        """Return the fields of the form: which camera parameters are free, and how outliers are treated."""
         return values_of("camera", self.project.options)
 
     def set_model(self, field: str, value: Any) -> None:
-        """Change one of `model_values`; undoable, and solved again at once."""
+        """Change one field of `model_values` and solve the camera again; undoable."""
         after = changed_options("camera", self.project.options, None, field, value)
         self.model.edit(tr("change the camera model"), replace(self.project, options=after))
 
     # ---- views
 
     def views(self) -> tuple[ViewQuality, ...]:
-        """List the views as the calibration shown judges them."""
+        """List the views of the camera calibration shown, with the quality of each."""
         return self.work.calibration.views if self.work.calibration is not None else ()
 
     def set_threshold(self, limit: float) -> None:
-        """Leave out the views above a limit in px, and use again those that only the last limit left out."""
+        """Leave out views with an RMS above `limit` in px; use again those that the threshold before left out."""
         before, self.threshold = self.threshold, limit
         judged = {one.name: one.rms_px for one in self.views() if one.used or one.exclusion is Exclusion.BY_HAND}
         above = {name for name, rms in judged.items() if rms > limit}
@@ -128,7 +126,7 @@ class CameraPresenter(CalibrationPresenter):
         self.changed.emit()
 
     def corners_of(self, name: str) -> Array | None:
-        """Return the target's corners (N, 2) found in a view; None if they were not (yet)."""
+        """Return the target's corners (N, 2) in px found in a view; None if it was not searched or has none."""
         if self.work.seen is None:
             return None
         return next((view.uv for view in self.work.seen.found if view.name == name), None)
@@ -148,7 +146,7 @@ class CameraPresenter(CalibrationPresenter):
         super().project_changed(before, after)
 
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """List the views found in the pictures, without those left out by hand."""
+        """List the targets found in the pictures, without pictures left out by hand."""
         found = self.work.seen.found if self.work.seen is not None else ()
         return tuple(view for view in found if view.name not in self.project.options.excluded)
 

@@ -39,7 +39,7 @@ class CoverageTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show which parts of the picture the views cover, and a sentence on what is missing."""
         work = self._presenter.work
         self.missing.setText(words.missing_sentence(work.judgement) or tr("Nothing is known yet."))
         if work.judgement is self._drawn and work.judgement is not None:
@@ -71,7 +71,7 @@ class ResidualTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the residuals of all corners that count, and a sentence on them."""
         work = self._presenter.work
         residuals = work.judgement.residuals if work.judgement is not None else None
         self.plot.setVisible(residuals is not None)
@@ -113,7 +113,7 @@ class ExpectedTab(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the map of the expected error in mm at the chosen depth, and a sentence on it."""
         work = self._presenter.work
         depths = work.judgement.expected if work.judgement is not None else ()
         self.map.setVisible(bool(depths))

@@ -16,7 +16,7 @@ from workbench.pages.words import mm, px, wording
 
 
 def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | None) -> tuple[Fact, ...]:
-    """Make the facts of the calibration."""
+    """Make the facts (name, value, unit) on the camera calibration; () without one."""
     if calibration is None:
         return ()
     expected = judgement.expected[1] if judgement is not None and judgement.expected else None
@@ -24,7 +24,7 @@ def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | Non
 
 
 def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
-    """Make rows of what differs: parameter, then, now, change, its sd; a change beyond chance is marked."""
+    """Make a table row of each parameter that differs: name, then, now, change, its sd; ▲ if beyond chance."""
     said = wording()
     rows = () if changes is None else change_cells(changes)
     return [
@@ -38,7 +38,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
 
 
 def view_sentence(name: str, quality: ViewQuality | None) -> str:
-    """Make the sentence on one view."""
+    """Make the sentence on one view: its RMS, tilt and corners, or why it is left out."""
     if quality is None:
         return name
     if quality.used:
@@ -58,7 +58,7 @@ def view_sentence(name: str, quality: ViewQuality | None) -> str:
 
 
 def expected_sentence(expected: ExpectedError) -> str:
-    """Make the sentence on the map of expected errors."""
+    """Make the sentence on the expected error at one depth: median and worst, in mm."""
     return tr(
         "Standard uncertainty (k = 1) of where a point at depth {depth} is seen, from the camera's calibration alone: "
         "{median} over half of the picture, {worst} at worst. Where no corner was seen, the camera is extrapolated.",
@@ -69,7 +69,7 @@ def expected_sentence(expected: ExpectedError) -> str:
 
 
 def missing_sentence(judgement: ViewsJudgement | None) -> str:
-    """Make the sentence on what to record next, or that nothing is missing."""
+    """Make the sentence on which views to record next, or that they cover enough; "" if not known."""
     if judgement is None:
         return ""
     return "\n".join(map(text_of, judgement.missing)) or tr("Nothing is missing: the views cover enough.")

@@ -29,12 +29,12 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
 
     @property
     def seen(self) -> SeenViews | None:
-        """Views found in the pictures; None until they have been searched."""
+        """Views found in the camera's pictures; None until the pictures have been searched."""
         return self.found
 
     @property
     def counted(self) -> tuple[int, int] | None:
-        """Columns and rows of the board found in the pictures instead of the one entered; None if not known."""
+        """Columns and rows of the board seen in the pictures if they differ from the target entered; else None."""
         rested_on, problem = self._refused
         refused = isinstance(problem, OtherBoard) and rested_on == self._found_key and self.found is None
         return problem.counted if refused else None
@@ -48,7 +48,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
 
     @staticmethod
     def name_of(path: Path) -> str:
-        """Return the name of a picture in the project."""
+        """Return the name in the project of the picture at `path`."""
         return f"camera/{path.name}"
 
     def _labels(self) -> tuple[str, str]:

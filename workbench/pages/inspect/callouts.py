@@ -49,7 +49,7 @@ class CalloutsTool(QObject):
         scene.callout_chosen.connect(self._chosen)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the callouts of the results over the surface, or none if they are switched off."""
         view = self._presenter.scan.view
         shown = self._presenter.bench.settings.callouts and view is not None
         self._scene.set_callouts(list(self._callouts(view)) if shown and view is not None else [])
@@ -107,7 +107,7 @@ class CalloutsTool(QObject):
         self._presenter.features.choose(name)
 
     def place_of(self, name: str) -> Array | None:
-        """Return the place of the callout of a feature, or of the thickness, on the surface; None if not known."""
+        """Return the place (3,) in mm of the callout of a feature, or of the thickness; None if not known."""
         view, features = self._presenter.scan.view, self._presenter.features
         if name == THICKNESS:
             return None if view is None or view.gauge is None else _of_thickness(view, view.gauge)

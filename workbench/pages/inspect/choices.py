@@ -62,24 +62,24 @@ class SurfaceChoices(QWidget):
 
     @property
     def shape(self) -> Shape:
-        """Shape shown: points, mesh or both."""
+        """What is drawn of the surface: "points", "mesh" or "both"."""
         return next(name for name, button in self.shapes.items() if button.isChecked())
 
     @property
     def colour(self) -> str:
-        """Kind of colours: "faces", "sigma", "height", "deviation", "nominal", "compared", "frame", "plain"."""
+        """What the surface is coloured by: "faces", "sigma", "height", "deviation", "nominal", "compared", …."""
         return str(self.colours.currentData())
 
     def choose_colour(self, name: str) -> None:
-        """Choose another kind of colours."""
+        """Choose what the surface is coloured by."""
         self.colours.setCurrentIndex(self.colours.findData(name))
 
     def show_compared(self, why_not: str) -> None:
-        """Enable the choice of the deviation from another surface, or give the reason why not."""
+        """Enable colouring by the deviation from another surface, or, with a reason `why_not`, disable it."""
         self._offer("compared", why_not)
 
     def show_nominal(self, there: bool) -> None:
-        """Colour by the chosen feature's deviations from its nominal surface; as before where it has none."""
+        """Colour by deviations from the nominal surface if they are `there`; else by what was chosen before."""
         was, self._nominal = self._nominal, there
         if there and not was:
             self._before = self.colour
@@ -91,7 +91,7 @@ class SurfaceChoices(QWidget):
             self._offer("nominal", tr("Choose a deviation from a nominal surface in the list of features."))
 
     def show_view(self, view: InspectionView | None, can: SurfaceButtons, clip_mm: float | None) -> None:
-        """Offer the choices there are for a scan; none without one."""
+        """Enable the choices that a scan has; None: no scan is shown, and nothing can be chosen."""
         for name, button in self.shapes.items():
             enable(button, can.use if name == "points" else can.mesh, self._tips[name])
         for widget in (self.colours, self.limit, self.slider):

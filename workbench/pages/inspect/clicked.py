@@ -49,7 +49,7 @@ class InspectClicked(QObject):
         features.changed.connect(self.follow)
 
     def start(self, mode: Mode, target: Target | None = None) -> None:
-        """Start to propose a face by a click in 3D, or a step by two; "" ends it.
+        """Start proposing a face by one click in 3D, or a step by two; the mode "" ends it.
 
         A face is for the region `target`, or else for that of the chosen feature if it has just one, or for a new
         feature.
@@ -59,12 +59,12 @@ class InspectClicked(QObject):
         self._drop()
 
     def stop(self) -> None:
-        """End it; the proposal is dropped."""
+        """End proposing by clicks, and drop the proposal."""
         if self.mode:
             self.start("")
 
     def click(self, point: int) -> None:
-        """Grow the face at the clicked point, instead of the last proposal."""
+        """Grow a face from the clicked point, in place of the last proposal."""
         view, folder = self._scan.view, self._features.model.folder
         if view is None or folder is None or not self.mode or not 0 <= point < len(view):
             return
@@ -104,7 +104,7 @@ class InspectClicked(QObject):
         self.changed.emit()
 
     def take(self) -> None:
-        """Add the proposal to the plan in one edit, undoable, and measure it."""
+        """Add the proposed face or step to the plan and measure it; one edit, undoable."""
         proposal = self.proposal
         if proposal is None or self._growing is not None or (self.mode == "step" and len(proposal.faces) < 2):
             return
@@ -116,7 +116,7 @@ class InspectClicked(QObject):
         self._features.measure_first()
 
     def hint(self) -> str:
-        """Describe the proposal, and what click and Enter do."""
+        """Write what is proposed, and what a click and Enter do next."""
         if self._growing is not None:
             return tr("Growing the face …")
         faces = () if self.proposal is None else self.proposal.faces
@@ -129,7 +129,7 @@ class InspectClicked(QObject):
         return shown + "\n" + self._what_enter_does() + " " + tr("Click elsewhere for another, Esc drops it.")
 
     def follow(self) -> None:
-        """Follow the choice of another feature, for which the next face is, or its new name."""
+        """Propose for the feature that is now chosen, or keep to the same one under its new name."""
         features = self._features
         if not self.mode or features.chosen == self._chosen:
             return

@@ -40,7 +40,7 @@ class InspectComparison(QObject):
 
     @property
     def buttons(self) -> ComparisonButtons:
-        """Reason for each disabled button, or ""."""
+        """Reason why each button of the comparison is disabled; "" if it is enabled."""
         return comparison_buttons(
             ComparisonFacts(
                 no_surface=self._scan.buttons.measure,
@@ -52,11 +52,11 @@ class InspectComparison(QObject):
 
     @property
     def look(self) -> tuple[object, ...]:
-        """All that the colours of the surface depend on."""
+        """Key of the colours that the comparison gives the surface: equal keys, equal colours."""
         return self.serial, self.significant_only
 
     def compare(self, other: Path) -> None:
-        """Compare the scan with the surface of this file."""
+        """Compare the scan with the surface in the file or folder `other`, in the background."""
         folder = self._bench.model.folder
         if folder is None or self.buttons.compare:
             return
@@ -81,7 +81,7 @@ class InspectComparison(QObject):
         self.changed.emit()
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change the alignment ("align") or the diameter; what is shown is compared anew."""
+        """Set the alignment ("align") or the diameter ("diameter") in mm, and compare again."""
         if value == getattr(self, key):
             return
         setattr(self, key, value)
@@ -90,17 +90,17 @@ class InspectComparison(QObject):
         self.changed.emit()
 
     def show_significant_only(self, only: bool) -> None:
-        """Grey out what may be chance, or not."""
+        """Grey out places whose deviation is not significant, or not."""
         self.significant_only = only
         self.changed.emit()
 
     def show_beside(self, beside: bool) -> None:
-        """Show the other surface beside the scan."""
+        """Show the other surface beside the scan, or not."""
         self.beside = beside
         self.changed.emit()
 
     def take_away(self) -> None:
-        """Remove the comparison from the view and the results."""
+        """Remove the comparison from the view and from the project's results."""
         folder = self._bench.model.folder
         if folder is None or self.buttons.take_away:
             return
@@ -113,7 +113,7 @@ class InspectComparison(QObject):
         )
 
     def forget(self) -> None:
-        """Show no comparison: another scan or another project is shown."""
+        """Drop the comparison shown, as another scan or another project is shown."""
         self.shown, self.other, self.serial = None, None, self.serial + 1
         self.changed.emit()
 

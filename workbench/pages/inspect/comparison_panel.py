@@ -61,7 +61,7 @@ class ComparisonPanel(QWidget):
         self.away.clicked.connect(lambda: self._comparison.take_away())
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the comparison's settings and result, and which buttons are enabled."""
         comparison = self._comparison
         can, shown = comparison.buttons, comparison.shown
         enable(self.file, can.compare, tr("Compare the scan with a PLY, STL, STEP or E57 file in mm"))

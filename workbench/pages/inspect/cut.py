@@ -42,7 +42,7 @@ class InspectCut(QObject):
 
     @property
     def plane(self) -> CutPlane | None:
-        """Cutting plane, if one is shown; it keeps its coordinate as long as the frame is of one kind."""
+        """Cutting plane through the surface; None if none is shown."""
         view = self._scan.view
         if not self._on or view is None or not len(view):
             return None
@@ -62,22 +62,22 @@ class InspectCut(QObject):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Range in mm within which it can be moved."""
+        """Smallest and largest coordinate in mm that the cutting plane can have."""
         along = self._coordinates[:, self._axis]
         return float(along.min()), float(along.max())
 
     def corners(self) -> Array:
-        """Return the corners of the plane, (4, 3) in mm in the camera frame."""
+        """Return the corners (4, 3) of the cutting plane in mm in the camera frame."""
         assert self.plane is not None
         return self.plane.corners(self._coordinates)
 
     def profile(self, count: int) -> ShownProfile:
-        """Compute the profile that it cuts of the first `count` points."""
+        """Compute the profile of the first `count` points in the cutting plane."""
         assert self.plane is not None
         return self.plane.profile(self._coordinates[:count])
 
     def count_shown(self, points: Array, triangles: NDArray[np.integer] | None = None) -> int:
-        """Count the `points` (N, 3), in mm in the camera frame, that it does not hide.
+        """Count the `points` (N, 3) in mm in the camera frame that the cutting plane does not hide.
 
         With `triangles`, indices (M, 3) of points: how many of these it does not hide whole.
         """
@@ -89,7 +89,7 @@ class InspectCut(QObject):
         return int(np.count_nonzero(seen if triangles is None else seen[triangles].any(axis=1)))
 
     def show(self, shown: bool) -> None:
-        """Show the plane through the part, or remove it."""
+        """Show the cutting plane, or, with False, remove it."""
         if shown != self._on:
             self._on, self._plane = shown, None
             self.turned_deg = self.tilted_deg = 0.0
@@ -97,27 +97,27 @@ class InspectCut(QObject):
 
     @property
     def clip(self) -> tuple[Array, Array] | None:
-        """Place (3,) on the plane and unit vector (3,) towards the hidden side; None if it hides nothing."""
+        """Place (3,) on the cutting plane and unit vector (3,) to its hidden side; None if nothing is hidden."""
         plane = self.plane
         if plane is None or not self.hides:
             return None
         return self.corners()[0], self.hides * plane.normal
 
     def hide(self, side: int) -> None:
-        """Hide everything on one side of it, or nothing; see `hides`."""
+        """Hide the surface on one side of the cutting plane (1 or −1), or, with 0, nothing."""
         if side != self.hides:
             self.hides = side
             self.changed.emit()
 
     def square_to(self, axis: int) -> None:
-        """Turn the plane normal to another axis, through the middle of the part."""
+        """Turn the cutting plane square to axis number `axis`, through the middle of the part."""
         if axis != self._axis:
             self._axis, self._plane = axis, None
             self.turned_deg = self.tilted_deg = 0.0
             self.changed.emit()
 
     def turn_to(self, turned_deg: float, tilted_deg: float) -> None:
-        """Turn the plane to angles about its own middle; see `turned_for`."""
+        """Turn and tilt the cutting plane, about its own middle, to two angles in degrees."""
         if self.plane is None or (turned_deg, tilted_deg) == (self.turned_deg, self.tilted_deg):
             return
         middle = self.corners().mean(axis=0)
@@ -127,14 +127,14 @@ class InspectCut(QObject):
         self.changed.emit()
 
     def move_to(self, at_mm: float) -> None:
-        """Move the plane to a coordinate, as far as the points reach."""
+        """Move the cutting plane to a coordinate in mm, as far as the points reach."""
         plane = self.plane
         if plane is not None:
             self._plane = replace(plane, at_mm=self._within_reach(at_mm))
             self.changed.emit()
 
     def pull(self, by_mm: float) -> None:
-        """Move the plane along its axis."""
+        """Move the cutting plane by `by_mm` along its axis."""
         if self.plane is not None:
             self.move_to(self.plane.at_mm + by_mm)
 
@@ -144,7 +144,7 @@ class InspectCut(QObject):
 
     @property
     def cannot_keep(self) -> str:
-        """Reason why it cannot become a feature now, or ""."""
+        """Reason why the cutting plane cannot become a feature of the plan now; "" if it can."""
         if self._axis >= UPRIGHT:
             return tr("A cut square to z is to look at: cross-sections that are measured stand upright.")
         if self.tilted_deg:
@@ -154,7 +154,7 @@ class InspectCut(QObject):
         return ""
 
     def keep(self) -> None:
-        """Add it to the plan as a cross-section; one edit, undoable."""
+        """Add the cutting plane to the plan as a cross-section; one edit, undoable."""
         plane, features = self.plane, self._features
         if plane is not None and not self.cannot_keep:
             section = plane.section(features.pose_camera_part)

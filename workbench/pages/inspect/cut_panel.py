@@ -78,20 +78,20 @@ class CutPanel(QWidget):
 
     @cached_property
     def chart(self) -> LineChart:
-        """Chart of the profile; made when there first is one, so that the window's start does not wait for it."""
+        """Chart of the profile in the cutting plane; made when it is first used."""
         chart = LineChart()
         self.views.addWidget(chart, SHARES[1])
         self._limit(chart)
         return chart
 
     def show_all(self, shown: bool) -> None:
-        """Show or hide the panel with the profile."""
+        """Show or hide this panel and the chart of the profile."""
         self.setVisible(shown)
         if "chart" in self.__dict__:
             self.chart.setVisible(shown)
 
     def put_beside(self, beside: bool) -> None:
-        """Put the profile beside the surface, or below it."""
+        """Put the chart of the profile beside the surface, or, with False, below it."""
         direction = QBoxLayout.Direction.LeftToRight if beside else QBoxLayout.Direction.TopToBottom
         if direction != self.views.direction():
             self.views.setDirection(direction)
@@ -105,7 +105,7 @@ class CutPanel(QWidget):
         chart.setMaximumHeight(CHART_PX if below else ANY_HEIGHT)
 
     def refresh(self, count: int) -> None:
-        """Show the plane and its profile of the first `count` points."""
+        """Show the cutting plane in numbers, and the profile of the cloud's first `count` points in it."""
         cut, plane = self._cut, self._cut.plane
         if plane is None:
             return
@@ -132,7 +132,7 @@ class CutPanel(QWidget):
         self.show_keep()
 
     def show_keep(self) -> None:
-        """Enable the button that keeps the plane, or show why it cannot be kept."""
+        """Enable the button that adds the cut to the plan, or disable it with the reason."""
         why_not = self._cut.cannot_keep
         enable(self.keep, why_not, tr("Measure this cut as a feature of the plan; undoable"))
 

@@ -41,25 +41,25 @@ class InspectDrawn:
         self._all: dict[tuple[str, str], _Drawn] = {}
 
     def begin(self, feature: str, name: str, places: Array) -> None:
-        """Store the points that were drawn round; their outline is not known yet."""
+        """Store `places`, the points that were drawn round in 3D for a region, to be marked."""
         self._all[feature, name] = _Drawn(places)
 
     def outlined(self, feature: str, name: str, corners: Array) -> None:
-        """Store the outline that became the region."""
+        """Store the polygon `corners` that the points drawn round were turned into."""
         if (feature, name) in self._all:
             self._all[feature, name] = _Drawn(self._all[feature, name].places, corners)
 
     def end_outlining(self) -> None:
-        """Drop the points that have no outline by now."""
+        """Drop the points drawn round that were not turned into a polygon."""
         self._all = {key: one for key, one in self._all.items() if one.corners is not None}
 
     def forget(self) -> None:
-        """Forget all: another scan is shown."""
+        """Drop all points drawn round, as another scan is shown."""
         self._all = {}
 
     @property
     def places(self) -> tuple[Array, ...]:
-        """Points to be marked now, of each region."""
+        """Points (N, 3) of each region drawn round that is to be marked."""
         self._all = {key: one for key, one in self._all.items() if self._counts(*key, one)}
         return tuple(one.places for (feature, _), one in self._all.items() if feature in ("", self._features.chosen))
 

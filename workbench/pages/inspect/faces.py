@@ -38,17 +38,17 @@ class InspectFaces(QObject):
 
     @property
     def spec(self) -> GaugeSpec:
-        """Specification of the gauge in the project."""
+        """Nominal value, tolerance and regions of the thickness in the project."""
         return self._model.project.rig.gauge or GaugeSpec()
 
     # ---- nominal value and tolerance
 
     def values(self) -> dict[str, float | None]:
-        """Return nominal value and tolerance in mm as they are in the form."""
+        """Return the fields of the form: nominal value and tolerance in mm, None if empty."""
         return {key: getattr(self.spec, key) for key in NUMBERS} | self._numbers
 
     def complaint(self, key: str) -> str:
-        """Say what is missing beside a number that was entered, or ""."""
+        """Return a sentence on what is missing beside the number in field `key`; "" if nothing is."""
         values = self.values()
         other = values["tolerance_mm" if key == "nominal_mm" else "nominal_mm"]
         if values[key] is not None or other is None:
@@ -58,7 +58,7 @@ class InspectFaces(QObject):
         return tr("Enter the nominal value too, or clear the tolerance: they go together.")
 
     def set_number(self, key: str, value: Any) -> None:
-        """Change the nominal value or the tolerance; undoable as soon as both are there, or neither."""
+        """Change the nominal value or the tolerance in mm; undoable once both are set, or neither."""
         values = self.values() | {key: None if value is None else float(value)}
         if (values["nominal_mm"] is None) != (values["tolerance_mm"] is None):
             self._numbers = values
@@ -77,16 +77,16 @@ class InspectFaces(QObject):
 
     @property
     def own(self) -> bool:
-        """Whether the faces are measured in regions drawn by the user."""
+        """Whether the faces are measured in regions that the user has drawn."""
         return self.spec.upper_polygon_px is not None
 
     def region(self, face: str) -> Array | None:
-        """Return the region (n, 2) in px of a face, "upper" or "lower"; None: it is found automatically."""
+        """Return the polygon (n, 2) in px that the face "upper" or "lower" is measured in; None: it is found."""
         drawn: Array | None = getattr(self.spec, f"{face}_polygon_px")
         return self._regions.get(face, drawn)
 
     def set_region(self, face: str, corners: ArrayLike) -> None:
-        """Measure a face within a polygon (n, 2) in pixels; undoable.
+        """Measure the face "upper" or "lower" within a polygon (n, 2) in px; undoable.
 
         The other face keeps its region. Without one it gets the outline of the points that were used on it; where
         nothing was measured yet, the region waits for the other one.
@@ -110,20 +110,20 @@ class InspectFaces(QObject):
         self._put_regions({face: polygon, other: beside}, words[face])
 
     def exchange(self) -> None:
-        """Exchange the upper and the lower region; undoable."""
+        """Exchange the polygons of the upper and the lower face; undoable."""
         upper, lower = self.spec.upper_polygon_px, self.spec.lower_polygon_px
         if upper is not None and lower is not None:
             self._put_regions({"upper": lower, "lower": upper}, tr("exchange the faces"))
 
     def take_found(self) -> None:
-        """Make regions of the outlines of the faces found, to be changed; undoable."""
+        """Turn the outlines of the faces that were found into polygons, which can be edited; undoable."""
         found = {face: self._found(face) for face in FACES}
         if all(outline is not None for outline in found.values()):
             self._put_regions(found, tr("take the faces found as regions"))
 
     @property
     def candidates(self) -> tuple[PairCandidate, ...]:
-        """Possible pairs of faces that can be confirmed, the measured one first; () where there is no choice."""
+        """Pairs of faces that may be meant, the measured one first; () if there is only one."""
         gauge = self._scan.gauge
         if gauge is None or self.own:
             return ()
@@ -131,12 +131,12 @@ class InspectFaces(QObject):
 
     @property
     def next_pair(self) -> NextPair | None:
-        """Next best possible pair, as it is drawn; None where there is no choice."""
+        """Second most likely pair of faces, to be drawn; None if there is only one pair."""
         view = self._scan.view
         return None if view is None or self.own else view.next_pair
 
     def confirm(self, candidate: PairCandidate) -> None:
-        """Measure this pair: the outlines of its faces become the regions; undoable."""
+        """Measure this pair of faces: the outlines of its faces become the polygons; undoable."""
         self._regions = {}
         outlines: dict[str, Array | None] = {
             face: np.array(corners) for face, corners in zip(FACES, candidate.outlines_px, strict=True)
@@ -144,19 +144,19 @@ class InspectFaces(QObject):
         self._put_regions(outlines, tr("confirm the faces {mm} mm apart", mm=number(candidate.thickness_mm, ".1f")))
 
     def find_automatically(self) -> None:
-        """Find the faces automatically again; undoable."""
+        """Drop the polygons, so that the faces are found automatically; undoable."""
         self._regions = {}
         self._put_regions(dict.fromkeys(FACES), tr("find the faces automatically"))
         self.changed.emit()
 
     @property
     def buttons(self) -> FacesButtons:
-        """Reason for each disabled button of the regions, or ""."""
+        """Reason why each button of the regions is disabled; "" if it is enabled."""
         found = self._found("upper") is not None
         return faces_buttons(FacesFacts(self._scan.buttons.use, found, self.own, self.missing()))
 
     def missing(self) -> str:
-        """Say what keeps the thickness from being measured, or ""."""
+        """Return a sentence on what keeps the thickness from being measured; "" if nothing does."""
         if "upper" in self._regions:
             return tr("Draw the lower face too, or let the faces be found automatically.")
         if "lower" in self._regions:
@@ -166,7 +166,7 @@ class InspectFaces(QObject):
     # ---- what happens elsewhere
 
     def follow(self, before: GaugeSpec | None, after: GaugeSpec | None) -> None:
-        """Follow a change of the project: drop half entered values where the project has others now."""
+        """Drop numbers and regions that were only half entered, if the project has others now."""
         was, now = before or GaugeSpec(), after or GaugeSpec()
         if any(getattr(was, key) != getattr(now, key) for key in NUMBERS):
             self._numbers = {}
@@ -174,11 +174,11 @@ class InspectFaces(QObject):
             self._regions = {}
 
     def forget_regions(self) -> None:
-        """Drop half drawn regions: another scan is shown."""
+        """Drop regions that were only half drawn, as another scan is shown."""
         self._regions = {}
 
     def forget(self) -> None:
-        """Forget all: another project is open."""
+        """Drop everything half entered, as another project is open."""
         self._numbers, self._regions = {}, {}
 
     def _found(self, face: str) -> Array | None:

@@ -36,7 +36,7 @@ HELPS: Mapping[Cause, str] = {
 
 
 def why_so_large(one: Characteristic) -> str:
-    """Write what contributes most to U, how much, and what helps; "" where that is not known."""
+    """Write what contributes most to a characteristic's U, how much, and what helps; "" if not known."""
     found = largest_row(one)
     if found is None:
         return ""

@@ -76,7 +76,7 @@ class PartPanel(QWidget):
         in_column(self.form, on=self, spacing=4)
 
     def refresh(self) -> None:
-        """Show the state of the project."""
+        """Show the project's statements on the part: material, temperature, layer of spray."""
         self.form.set_values(self._part.values())
 
     def _number(self, key: str, name: str, allowed: NumberRange, help: str) -> None:
@@ -124,7 +124,7 @@ class FacesPanel(QWidget):
         column.addLayout(row)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show nominal value, tolerance and regions of the faces, and which buttons are enabled."""
         faces = self._presenter.faces
         self.form.set_values(faces.values())
         for key in NUMBERS:
@@ -230,7 +230,7 @@ class ResultPanel(QWidget):
             column.addWidget(widget)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the verdict, the thickness and its details, or why there is none."""
         p = self._presenter
         gauge, outdated = p.scan.gauge, p.state.state is not State.DONE
         if gauge is None or (p.scan.serial, outdated) == self._shown:
@@ -296,7 +296,7 @@ class PicksPanel(QWidget):
         self.list.selectionModel().currentChanged.connect(lambda: self._show_buttons())
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the list of picked points and distances, and which buttons are enabled."""
         picks = self._presenter.picks
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)

@@ -37,17 +37,17 @@ class InspectPart:
 
     @property
     def part(self) -> Part:
-        """Part as stated in the project."""
+        """Statements on the part in the project's rig."""
         return self._model.project.rig.part
 
     def values(self) -> dict[str, Any]:
-        """Return the fields as they are in the form; None where nothing is stated."""
+        """Return the statements on the part as the fields of a form; None where nothing is stated."""
         pairs = {key: getattr(self.part, key) for key in WITH_U}
         pairs |= {u: getattr(self.part, u) for u, _ in WITH_U.values()}
         return {"material": self.part.material or "", **pairs}
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change one field; an estimate and its uncertainty are set and cleared together."""
+        """Change one statement on the part; undoable. A value and its uncertainty are cleared together."""
         if key == "material":
             changed: dict[str, Any] = {key: value or None}
         else:

@@ -51,17 +51,17 @@ class InspectPicks(QObject):
         self._numbers = {"P": 0, "D": 0}
 
     def start(self, mode: Mode) -> None:
-        """Start picking a point, or an end of a distance, by a click in 3D; "" ends it."""
+        """Start picking a point, or the ends of a distance, by clicks in 3D; the mode "" ends it."""
         if mode != self.mode:
             self.mode, self.first = mode, None
             self.changed.emit()
 
     def stop(self) -> None:
-        """End picking."""
+        """End picking; points and distances stay in the list."""
         self.start("")
 
     def pick(self, point: int) -> None:
-        """Pick the point of the view that was clicked."""
+        """Pick point number `point` of the view: into the list, or as one end of a distance."""
         view = self._scan.view
         if view is None or not self.mode or not 0 <= point < len(view):
             return
@@ -79,19 +79,19 @@ class InspectPicks(QObject):
         self.changed.emit()
 
     def remove(self, name: str) -> None:
-        """Remove a point or a distance from the list."""
+        """Remove the point or distance called `name` from the list."""
         self.items = [item for item in self.items if item.name != name]
         self.changed.emit()
 
     def clear(self) -> None:
-        """Remove all from the list."""
+        """Remove all points and distances from the list."""
         if self.items or self.first is not None or self.mode:
             self.items, self.first, self.mode = [], None, ""
             self._numbers = {"P": 0, "D": 0}
             self.changed.emit()
 
     def hint(self) -> str:
-        """Describe what the next click does."""
+        """Write what the next click picks."""
         if self.mode == "point":
             return tr("Click points of the surface; each is added to the list.")
         if self.mode == "distance":

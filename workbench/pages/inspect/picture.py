@@ -51,7 +51,7 @@ class PictureTab(QWidget):
         presenter.picture_ready.connect(self._show_picture)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the chosen picture with the regions and points of the faces on it."""
         p, view = self._presenter, self._presenter.scan.view
         self.pictures.setEnabled(view is not None)
         if view is None:
@@ -66,7 +66,7 @@ class PictureTab(QWidget):
         self.line.setText(self._words())
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Start drawing a face."""
+        """Start drawing the region of a face on the picture, by its corners or by one stroke."""
         if kind == "polygon":
             self.image.start_polygon(face)
         else:

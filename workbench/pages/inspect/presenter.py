@@ -99,7 +99,7 @@ class InspectPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """Stage of the inspection."""
+        """How far the measurement of the thickness is: no scan, measuring, measured, …."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -121,7 +121,7 @@ class InspectPresenter(StepPresenter):
         return tr("Scan the part first.") if "scan" not in self.model.results else ""
 
     def warning(self) -> str:
-        """Say what the report will lack if one goes on now, or ""."""
+        """Return a sentence on what the report will lack if the user goes on now; "" if nothing."""
         return {
             Stage.UNMEASURED: tr("Measure the thickness, or go on without one: then the report has none."),
             Stage.FAILED: tr("Without a thickness the report shows the surface only."),
@@ -132,12 +132,12 @@ class InspectPresenter(StepPresenter):
 
     @property
     def problem_of_measuring(self) -> str:
-        """Reason why the last attempt gave no thickness, or ""."""
+        """Reason why the last measurement gave no thickness; "" if it gave one."""
         return self._unmeasurable
 
     @property
     def cannot_measure(self) -> str:
-        """Reason why the thickness cannot be measured now, or ""."""
+        """Reason why the thickness cannot be measured now; "" if it can."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.NO_SCAN: tr("Scan the part first."),
@@ -150,7 +150,7 @@ class InspectPresenter(StepPresenter):
     # ---- measuring
 
     def do_run(self) -> None:
-        """Measure the thickness of the scan among the results."""
+        """Measure the thickness on the scan in the project's results, in the background."""
         folder, project = self.model.folder, self.project
         if folder is None or self.cannot_measure:
             return
@@ -185,18 +185,18 @@ class InspectPresenter(StepPresenter):
 
     @property
     def part_frame(self) -> ViewFrame | None:
-        """Part's own frame, if it is known."""
+        """Frame of the part: its part coordinates or its lower face; None if neither is known."""
         gauge = self.scan.gauge
         return part_frame(self.features.pose_camera_part, None if gauge is None else gauge.lower.plane)
 
     @property
     def frame(self) -> ViewFrame:
-        """Frame in which the surface is shown."""
+        """Frame in which the surface and all coordinates are shown: the part's or the camera's."""
         return shown_frame(self.part_frame, wanted=self.bench.settings.part_frame)
 
     @property
     def results(self) -> ResultList | None:
-        """Results on the part; None while those of the features are not known."""
+        """All results on the part with the verdict; None while the features' results are not known."""
         shown = self.features.shown
         if shown is None:
             return None if "inspection" in self.model.results else ResultList.of(self.scan.gauge)
@@ -204,26 +204,26 @@ class InspectPresenter(StepPresenter):
         return ResultList.of(self.scan.gauge, rows, unmeasured=shown.unmeasured)
 
     def points_shown(self) -> int:
-        """Count the points shown."""
+        """Count the points shown: those with a σ up to the limit that the user has set."""
         if self.scan.view is None:
             return 0
         return len(self.scan.view) if self.clip_mm is None else self.scan.view.up_to(self.clip_mm)
 
     def triangles_shown(self) -> int:
-        """Count the triangles of the mesh shown."""
+        """Count the triangles shown: those with a σ up to the limit that the user has set."""
         mesh = self.scan.view.mesh if self.scan.view is not None else None
         if mesh is None:
             return 0
         return len(mesh.triangles) if self.clip_mm is None else mesh.up_to(self.clip_mm)
 
     def clip(self, sigma_mm: float | None) -> None:
-        """Show only the points with no larger σ; None: all. Nothing that is measured changes."""
+        """Show only points with a σ up to `sigma_mm`; None shows all. No result changes."""
         if sigma_mm != self.clip_mm:
             self.clip_mm = sigma_mm
             self.changed.emit()
 
     def choose_picture(self, name: str) -> None:
-        """Show this picture: RELIEF, or the name of a recorded one."""
+        """Show the picture called `name`: RELIEF, the measured surface, or a recorded picture."""
         if name == self.picture:
             return
         self.picture = name
@@ -231,7 +231,7 @@ class InspectPresenter(StepPresenter):
         self.changed.emit()
 
     def read_picture(self) -> None:
-        """Read the recorded picture that is shown, if it is one; `picture_ready` delivers it."""
+        """Read the recorded picture that is chosen, in the background; `picture_ready` delivers it."""
         name, folder = self.picture, self.model.folder
         if name == RELIEF or folder is None:
             return
@@ -254,36 +254,36 @@ class InspectPresenter(StepPresenter):
     # ---- points and faces clicked in 3D
 
     def start_picking(self, mode: Mode) -> None:
-        """Start picking a point, or an end of a distance, by a click in 3D; "" ends it."""
+        """Start picking a point, or the ends of a distance, by clicks in 3D; the mode "" ends it."""
         self.clicked.stop()
         self.picks.start(mode)
 
     def start_clicking(self, mode: ClickMode, target: Target | None = None) -> None:
-        """Start to propose a face by a click in 3D, or a step by two; "" ends it."""
+        """Start proposing a face by one click in 3D, or a step by two; the mode "" ends it."""
         self.picks.stop()
         self.clicked.start(mode, target)
 
     def click_region(self, name: str) -> None:
-        """Start to propose a clicked face for this region of the chosen feature."""
+        """Start proposing a face by a click in 3D for the chosen feature's region called `name`."""
         if self.feature.spec is not None:
             self.start_clicking("face", Target(self.feature.spec.name, self.feature.place_of(name)))
 
     def click(self, point: int) -> None:
-        """Handle a click on a point of the view."""
+        """Handle a click on point number `point`: pick it, or grow a face from it."""
         if self.clicked.mode:
             self.clicked.click(point)
         else:
             self.picks.pick(point)
 
     def end_picking(self) -> None:
-        """End the actions of clicks in 3D."""
+        """End picking points and proposing faces by clicks in 3D."""
         self.picks.stop()
         self.clicked.stop()
 
     # ---- regions chosen in 3D
 
     def outline(self, face: str, chosen: NDArray[np.bool_]) -> None:
-        """Make the chosen points the region of a face: the outline of the plane among them."""
+        """Turn the points marked in `chosen` (N,) into the polygon of a region: the outline of the face among them."""
         folder, view = self.model.folder, self.scan.view
         if folder is None or view is None:
             return
@@ -316,7 +316,7 @@ class InspectPresenter(StepPresenter):
         self.changed.emit()
 
     def set_region(self, name: str, corners: ArrayLike) -> None:
-        """Use a polygon of the picture for the region of that name: of a face, or of the chosen feature."""
+        """Set the polygon (n, 2) in px of the region called `name`: of a face, or of the chosen feature."""
         if name in FACES:
             self.faces.set_region(name, corners)
         elif name == LINE:

@@ -43,22 +43,22 @@ class InspectScan(QObject):
 
     @property
     def stale(self) -> bool:
-        """Whether something newer than what is shown is being read."""
+        """Whether a newer scan than the one shown is being read."""
         return self._shown != self._asked
 
     @property
     def is_of_project(self) -> bool:
-        """Whether the scan among the project's results is shown, not an earlier one or that of another project."""
+        """Whether the scan shown is the one in the project's results, not an earlier one."""
         return self.view is not None and not self.stale and self._folder == self._model.folder
 
     @property
     def gauge(self) -> GaugeResult | None:
-        """Thickness that is shown."""
+        """Thickness of the scan shown; None if none was measured."""
         return self.view.gauge if self.view is not None else None
 
     @property
     def buttons(self) -> SurfaceButtons:
-        """Reason for each disabled button of the view, or ""."""
+        """Reason why each button of the view is disabled; "" if it is enabled."""
         view = self.view
         return surface_buttons(
             SurfaceFacts(
@@ -71,27 +71,27 @@ class InspectScan(QObject):
 
     @property
     def is_old(self) -> bool:
-        """Whether the scan itself is out of date."""
+        """Whether the scan shown is out of date: its inputs have changed since."""
         return self._model.states["scan"].state is State.OUTDATED
 
     @property
     def is_thickness_old(self) -> bool:
-        """Whether the thickness shown differs from what the project would give now."""
+        """Whether the thickness shown differs from what the project's settings would give now."""
         return self.stale or self._model.states["inspect"].state is not State.DONE
 
     @property
     def recording(self) -> str:
-        """Recording the scan was measured from, as the project names it."""
+        """Name, in the project, of the recording that the scan shown was measured from."""
         done = self._model.results.get("scan")
         return done.rests_on.get("recording", "") if done is not None else ""
 
     def as_scanned(self) -> Project:
-        """Return the project with the recording that the scan among the results was measured from."""
+        """Return the project with the recording that the scan in its results was measured from."""
         project = self._model.project
         return replace(project, sources=replace(project.sources, scan=self.recording))
 
     def look(self, *, seen: bool) -> None:
-        """Read the scan if the page is seen and there is another one."""
+        """Read the scan in the project's results, if it is not shown yet and the page is `seen`."""
         results = self._model.results
         if "scan" not in results or not self._model.is_open:
             if self.view is not None or self._asked:
@@ -133,7 +133,7 @@ class InspectScan(QObject):
         )
 
     def forget(self) -> None:
-        """Show no scan."""
+        """Drop the scan shown."""
         self.view, self.problem, self.is_new = None, "", True
         self._shown = self._asked = ()
         self.changed.emit()

@@ -60,7 +60,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """Derive the stage from the facts."""
+    """Derive how far the thickness is (`Stage`) from what is known of the scan and the results."""
     if facts.measuring:
         return Stage.MEASURING
     if not facts.scan:
@@ -77,7 +77,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def why_not_measure(facts: Facts) -> WhyNot:
-    """Give the reason why the thickness cannot be measured."""
+    """Return the reason why the thickness cannot be measured; `WhyNot` "" if it can."""
     if not facts.scan:
         return WhyNot.NO_SCAN
     if facts.unreadable:
@@ -114,7 +114,7 @@ class SurfaceButtons(NamedTuple):
 
 
 def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
-    """Derive from the facts why each button of the surface is disabled."""
+    """Derive why each button for showing, drawing on and picking from the surface is disabled; "" if enabled."""
     if facts.shown:
         return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."), "")
     none = tr("The scan cannot be read.") if facts.unreadable else "" if facts.scan else tr("Scan the part first.")
@@ -146,7 +146,7 @@ class FacesButtons(NamedTuple):
 
 
 def faces_buttons(facts: FacesFacts) -> FacesButtons:
-    """Derive from the facts why each button of the regions is disabled."""
+    """Derive why each button of the faces' regions is disabled; "" for each that is enabled."""
     if facts.own:
         taken = tr("The faces are regions of your own already: drag their corners in the picture.")
         return FacesButtons(facts.no_surface, taken, "", "")
@@ -180,7 +180,7 @@ class PicksButtons(NamedTuple):
 
 
 def picks_buttons(facts: PicksFacts) -> PicksButtons:
-    """Derive from the facts why each button of points and distances is disabled."""
+    """Derive why each button of picked points and distances is disabled; "" for each that is enabled."""
     none = "" if facts.some else tr("Nothing is picked yet.")
     choose = "" if facts.chosen else tr("Choose a point or a distance in the list first.")
     return PicksButtons(facts.no_surface, none or choose, none)
@@ -209,7 +209,7 @@ class ComparisonButtons(NamedTuple):
 
 
 def comparison_buttons(facts: ComparisonFacts) -> ComparisonButtons:
-    """Derive from the facts why each button of the comparison is disabled."""
+    """Derive why each button of the comparison is disabled; "" for each that is enabled."""
     busy = tr("The surfaces are being compared.") if facts.running else ""
     none = "" if facts.shown else tr("Compare with another surface first.")
     return ComparisonButtons(

@@ -170,7 +170,7 @@ class SurfaceTab(QWidget):
         presenter.comparison.made.connect(self._show_compared)
 
     def show_place(self, name: str) -> None:
-        """Bring the points of a feature, or of the thickness, to the middle of the view."""
+        """Move the points of the feature called `name`, or of the thickness, to the middle of the view."""
         place = self.callouts.place_of(name)
         if place is not None:
             self.scene.look_at(place)
@@ -183,7 +183,7 @@ class SurfaceTab(QWidget):
         self.choices.choose_colour("faces")
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the scan in 3D with its colours, marks and choices, or a sentence if there is none."""
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         self.choices.show_compared("" if p.comparison.shown is not None else p.comparison.buttons.look)
@@ -215,16 +215,16 @@ class SurfaceTab(QWidget):
 
     @property
     def shape(self) -> Shape:
-        """Shape shown: points, mesh or both."""
+        """What is drawn of the surface: "points", "mesh" or "both"."""
         return self.choices.shape
 
     @property
     def colour(self) -> str:
-        """Kind of colours, as `SurfaceChoices.colour`."""
+        """What the surface is coloured by: "faces", "sigma", "height", "deviation", …."""
         return self.choices.colour
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Start drawing round the points of a face."""
+        """Start drawing round points in 3D for the region of a face, by corners or by one stroke."""
         self._presenter.end_picking()
         if kind == "polygon":
             self.scene.start_polygon()

@@ -28,7 +28,7 @@ def thickness(gauge: GaugeResult) -> str:
 
 
 def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
-    """Return the verdict on a thickness, or on the part by all results; "" for none."""
+    """Return the kind of verdict to show on a thickness or a list of results; "" for None or without limits."""
     kinds: dict[str, VerdictKind] = {
         "conforming": "conforming",
         "not conforming": "not conforming",
@@ -49,7 +49,7 @@ class RepeatRow(NamedTuple):
 
 
 def repeat_row(repeat: Repeat) -> RepeatRow:
-    """Make the row of a repeat in the list."""
+    """Write one repeat as a row of the list."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm, wording())
     return RepeatRow(
         scan=scan_name(repeat.scan),
@@ -61,7 +61,7 @@ def repeat_row(repeat: Repeat) -> RepeatRow:
 
 
 def repeats_tsv(repeats: tuple[Repeat, ...], *told: Iterable[Fact]) -> str:
-    """Write the series as text with tabs, with the facts `told` of it, all digits kept, for a spreadsheet."""
+    """Write the repeats, and the facts `told` about them, as tab-separated text with all digits."""
     lines = [[tr("scan"), tr("thickness [mm]"), "U [mm]", "k", tr("calibration"), tr("measured at")]]
     lines += [
         [
@@ -91,18 +91,18 @@ def _in_full(fact: Fact) -> str:
 
 
 def short_id(calibration_id: str) -> str:
-    """Shorten both ids, long enough to tell calibrations apart in a table."""
+    """Shorten a calibration's ids, of camera and planes, enough to tell calibrations apart."""
     return "-".join(part[:6] for part in calibration_id.split("-"))
 
 
 def scan_name(stored: str) -> str:
-    """Return the name of a recording: its folder, with the one above where its own is ambiguous."""
+    """Return the short name of a recording: its folder, with the parent folder where that is ambiguous."""
     path = PurePosixPath(stored)
     return f"{path.parent.name}/{path.name}" if path.name == "scan" and path.parent.name else path.name
 
 
 def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
-    """Write where a picked point is in a frame, and where it was seen."""
+    """Write a picked point in two lines: its coordinates in `frame`, and the frame and pixel it was seen at."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
     x, y, z = (wording().fixed(float(value), decimals) for value in frame.coordinates(pick.place))
     place = tr("{name}   x {x}   y {y}   z {z} mm", name=pick.name, x=x, y=y, z=z)
@@ -118,7 +118,7 @@ def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
 
 
 def span_lines(span: Span, frame: ViewFrame) -> tuple[str, str]:
-    """Write a distance with its standard uncertainty, and its ends in a frame."""
+    """Write a picked distance in two lines: its length with u, and its ends in `frame`."""
     text = tr("{name}   {value} mm, u = {u} mm", name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
@@ -128,7 +128,7 @@ def span_lines(span: Span, frame: ViewFrame) -> tuple[str, str]:
 
 
 def span_label(span: Span) -> str:
-    """Write the text of the dimension line."""
+    """Write the length of a picked distance for its dimension line."""
     return tr("{name}: {value} mm (u = {u} mm)", name=span.name, **_span(span))
 
 

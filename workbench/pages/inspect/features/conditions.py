@@ -49,27 +49,27 @@ class InspectConditions:
 
     @property
     def plan(self) -> InspectionPlan:
-        """Inspection plan of the project, whose conditions these are."""
+        """Inspection plan of the project, to which the conditions belong."""
         return self._features.plan
 
     @property
     def projects_folder(self) -> Path:
-        """Folder in which the project of a master is searched."""
+        """Folder in which the file dialog looks for the project of a master."""
         return self._features.bench.settings.projects_folder
 
     @property
     def temperature_is_on(self) -> bool:
-        """Whether lengths are stated at 20 °C."""
+        """Whether the plan states lengths at 20 °C."""
         return bool(self.values()[AT_20])
 
     @property
     def master_is_on(self) -> bool:
-        """Whether the part is compared with a master, or one is being entered."""
+        """Whether the plan compares the part with a master, or a master is being entered."""
         return bool(self.values()[WITH_MASTER])
 
     @property
     def in_short(self) -> str:
-        """Short summary of the conditions, or ""."""
+        """Summary of the conditions in a few words; "" if there are none."""
         plan = self.plan
         said = [
             tr("3-2-1") if plan.frame is not None else "",
@@ -79,18 +79,18 @@ class InspectConditions:
         return joined(one for one in said if one)
 
     def values(self) -> dict[str, Any]:
-        """Return the fields as they are in the form."""
+        """Return the fields of the form of conditions, with those still incomplete."""
         self._follow()
         values = values_of(self.plan) | self._pending
         return values | {U_MEASURED: combined(values["budget"])}
 
     def complaint(self, group: str) -> str:
-        """Say what the fields of a group ("frame", "temperature", "master") still lack, or ""."""
+        """Return a sentence on what the group "frame", "temperature" or "master" lacks; "" if nothing."""
         self._follow()
         return self._complaints.get(group, "")
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change a field; as soon as its group is complete it is put into the plan."""
+        """Change the field `key`; once its group is complete, it is written to the plan, undoable."""
         group = _group_of(key)
         if key == AT_20 and value:
             part = self._model.project.info.part_celsius
@@ -107,7 +107,7 @@ class InspectConditions:
         self._take(group, {key: value})
 
     def take_master(self, folder: Path) -> None:
-        """Read the measured values of the master from a project, or a folder of results; undoable."""
+        """Read the measured lengths of a master from a project or a folder of results; undoable."""
         project, asked = self._model.folder, self.values()
 
         def done(master: Any) -> None:
@@ -173,7 +173,7 @@ def _group_of(key: str) -> str:
 
 
 def values_of(plan: InspectionPlan) -> dict[str, Any]:
-    """Return all fields of a plan's conditions; those it does not have have default values."""
+    """Return the conditions of a plan as the fields of the form, defaults where the plan states none."""
     frame = plan.frame or PartFrame("", "")
     values: dict[str, Any] = {key: getattr(frame, key) for key in FRAME}
     values |= {AT_20: plan.temperature is not None, WITH_MASTER: plan.master is not None}
@@ -187,17 +187,17 @@ def values_of(plan: InspectionPlan) -> dict[str, Any]:
 
 
 def comparable(plan: InspectionPlan) -> tuple[str, ...]:
-    """List the features that can be compared with a master, by name."""
+    """List the names of the features that can be compared with a master."""
     return tuple(one.name for one in plan.features if kind_of(one).expands)
 
 
 def frame_choices(plan: InspectionPlan, place: str) -> tuple[str, ...]:
-    """List the features that can be this part of the coordinate system, by name."""
+    """List the names of the features that can define the part coordinates at `place`, as "primary"."""
     return tuple(one.name for one in plan.features if kind_of(one).element in FRAME[place])
 
 
 def with_frame(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """Set the plan's part coordinates from the fields; ValueError with a sentence if they are incomplete."""
+    """Return the plan with the part coordinates in the fields; ValueError, a sentence, if they are incomplete."""
     names = [str(values[key]) for key in FRAME]
     if not names[0]:
         return replace(plan, frame=None)
@@ -209,7 +209,7 @@ def with_frame(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPla
 
 
 def with_temperature(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """Set the plan to lengths at 20 °C by the fields, or as measured."""
+    """Return the plan with lengths at 20 °C by the fields, or as measured if that is switched off."""
     if not values[AT_20]:
         return replace(plan, temperature=None)
     known: dict[str, Any] = {key: float(values[key]) for key in TEMPERATURES}
@@ -218,7 +218,7 @@ def with_temperature(plan: InspectionPlan, values: Mapping[str, Any]) -> Inspect
 
 
 def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:
-    """Set the plan's master from the fields; ValueError with a sentence if they are incomplete."""
+    """Return the plan with the master in the fields; ValueError, a sentence, if they are incomplete."""
     if not values[WITH_MASTER]:
         return replace(plan, master=None)
     if not str(values["name"]).strip():
@@ -250,7 +250,7 @@ def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPl
 
 
 def combined(budget: Sequence[tuple[str, float]]) -> float | None:
-    """Combine the causes of a master's measurement, in mm, as it is shown; None if none is known."""
+    """Compute the combined standard uncertainty in mm of a master's budget, to be shown; None if it is empty."""
     return None if not budget else round(math.hypot(*(u for _, u in budget)), 6)
 
 

@@ -44,7 +44,7 @@ class ConditionsPanel(QWidget):
         self._column.addWidget(self._inside)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the fields of the conditions, with help or what is missing under each group."""
         conditions, plan = self._conditions, self._conditions.plan
         if not self.isVisible():
             return

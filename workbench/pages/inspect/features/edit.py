@@ -42,22 +42,22 @@ class InspectFeatureEdit:
 
     @property
     def spec(self) -> FeatureSpec | None:
-        """The chosen feature; None if none is."""
+        """Chosen feature of the plan; None if none is chosen."""
         plan, chosen = self._features.plan, self._features.chosen
         return plan.feature(chosen) if chosen in plan.names else None
 
     def values(self) -> dict[str, Any]:
-        """Return the fields as they are in the form."""
+        """Return the fields of the chosen feature's form, with impossible values as typed."""
         self._follow()
         return {} if self.spec is None else fields.values_of(self.spec) | self._pending
 
     def complaint(self, key: str) -> str:
-        """Say what is wrong with a field, or ""."""
+        """Return a sentence on what is wrong with the field `key`; "" if nothing is."""
         self._follow()
         return self._complaints.get(key, "")
 
     def add(self, kind: str, nominal: Path | None = None) -> None:
-        """Add a feature of a kind and choose it; undoable. A deviation needs its `nominal` surface."""
+        """Add a feature of a kind to the plan and choose it; undoable. A "deviation" needs a `nominal` file."""
         features, view = self._features, self._scan.view
         why_not, folder = fields.why_not(kind, features.plan), self._model.folder
         if why_not or folder is None:
@@ -69,7 +69,7 @@ class InspectFeatureEdit:
         features.measure_first()
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change a field; an impossible value stays in the form with a sentence, and the plan stays as it was."""
+        """Change one field of the chosen feature; an impossible value stays in the form only, with a sentence."""
         self._follow()
         spec = self.spec
         if spec is None:
@@ -102,7 +102,7 @@ class InspectFeatureEdit:
         self._put(spec, changed)
 
     def set_region(self, place: int, corners: ArrayLike) -> None:
-        """Use the points seen inside a polygon of the picture; undoable."""
+        """Make the polygon `corners` (n, 2) in px the region number `place` of the chosen feature; undoable."""
         spec = self.spec
         if spec is None or place >= len(spec.regions):
             return
@@ -110,7 +110,7 @@ class InspectFeatureEdit:
         self._put(spec, fields.with_region(spec, place, region))
 
     def set_line(self, ends: ArrayLike) -> None:
-        """Put the chosen section between two places of the picture; undoable."""
+        """Put the chosen section's plane through two pixels, `ends` (2, 2); undoable."""
         spec = self.spec
         if spec is not None and spec.section is not None:
             first, second = np.asarray(ends)
@@ -119,25 +119,25 @@ class InspectFeatureEdit:
 
     @property
     def selected_face(self) -> str:
-        """Meaning of points chosen in 3D: the plane face among them, or ("") all of them."""
+        """Key of what points drawn round in 3D mean: "upper", the plane face among them, or "", all of them."""
         return "upper" if self.spec is not None and kind_of(self.spec).automatic == "numbered" else ""
 
     def region_name(self, place: int) -> str:
-        """Return the name of a region of the chosen feature in the pictures."""
+        """Return the name by which region number `place` of the chosen feature is drawn in pictures."""
         return f"{REGION} {place}"
 
     def place_of(self, name: str) -> int:
-        """Return the place of the region of this name."""
+        """Return the number of the chosen feature's region that is drawn under `name`."""
         return int(name.removeprefix(REGION))
 
     def set_nominal(self, path: Path) -> None:
-        """Compare with another nominal surface; undoable."""
+        """Compare the chosen feature with another nominal surface, in the file `path`; undoable."""
         folder = self._model.folder
         if folder is not None:
             self.set_value("nominal", stored_source(folder, path))
 
     def add_cut(self) -> None:
-        """Add one measurement to the chosen section, where its profile has levels; undoable."""
+        """Add a measurement to the chosen section, between two levels of its profile; undoable."""
         spec = self.spec
         if spec is None:
             return
@@ -150,7 +150,7 @@ class InspectFeatureEdit:
             self._put(spec, fields.with_new_cut(spec, at))
 
     def remove_cut(self, place: int) -> None:
-        """Remove one measurement from the chosen section; undoable."""
+        """Remove the measurement number `place` from the chosen section; undoable."""
         if self.spec is not None:
             self._put(self.spec, fields.without_cut(self.spec, place))
 

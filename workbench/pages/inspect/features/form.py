@@ -50,7 +50,7 @@ def _of_the_list(kind: FeatureKind) -> str:
 
 
 def choose_nominal(parent: QWidget, folder: Path | None) -> Path | None:
-    """Ask for the file of a nominal surface, or None."""
+    """Ask for the file of a nominal surface; return its path, or None if the user cancels."""
     kinds = tr("Nominal surfaces (*.step *.stp *.stl *.STEP *.STP *.STL)")
     return ask.choose_file_to_open(parent, tr("Nominal surface"), folder, kinds)
 
@@ -73,7 +73,7 @@ class FeatureForm(QWidget):
         self._begin()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the chosen feature's fields; the forms are made again if it has other fields."""
         spec, plan = self._edit.spec, self._features.plan
         self.setVisible(spec is not None)
         if spec is None:
@@ -92,7 +92,7 @@ class FeatureForm(QWidget):
 
     @property
     def first_limit(self) -> QWidget | None:
-        """Editor of the first of its limits; None if it has none."""
+        """Editor of the chosen feature's first limit; None if it has no limits."""
         key = next((key for key in self.what.values() if key.startswith("limits ")), None)
         return None if key is None else self.what.editor(key)
 
@@ -321,7 +321,7 @@ _ENDS = {
 
 
 def add_settings(form: SettingsForm, spec: FeatureSpec) -> None:
-    """Add all settings of a feature to a form."""
+    """Add the fields of all settings of a feature to a form."""
     for title, settings in _sections(spec):
         if title:
             form.add_section(title)

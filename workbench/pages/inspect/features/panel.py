@@ -102,12 +102,12 @@ class FeaturesPanel(QWidget):
         self.form.draw.connect(self.draw)
 
     def fit(self, page_height: int) -> None:
-        """Set the height of the list for a page of this height."""
+        """Set the height of the list of features to suit a page of `page_height` px."""
         self._page_height = page_height
         self._fit_list()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the list of features with their results, and which buttons are enabled."""
         features = self._features
         some = bool(features.plan.features)
         self.list.setVisible(some or self._scan.view is not None)
@@ -448,7 +448,7 @@ class TemplatesButton(QPushButton):
         self.setMenu(menu)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Fill the menu with the templates used last, and enable what is possible."""
         why_not, paths = self._templates.cannot_save, self._templates.recent
         enable(self.save, why_not, tr("Write these features, their regions and limits to a file"))
         if paths == self._paths:

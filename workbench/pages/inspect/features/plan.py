@@ -58,7 +58,7 @@ class FeaturesButtons(NamedTuple):
 
 
 def features_buttons(facts: FeaturesFacts) -> FeaturesButtons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why each button of the list of features is disabled; "" for each that is enabled."""
     none = "" if facts.count else tr("Add a feature first.")
     choose = "" if facts.place >= 0 else tr("Choose a feature first.")
     return FeaturesButtons(
@@ -97,18 +97,18 @@ class InspectFeatures(QObject):
 
     @property
     def callouts_moved(self) -> Mapping[str, tuple[float, float]]:
-        """Distance (right, down) in px by which the callout of a feature was dragged."""
+        """Distance (right, down) in px by which each callout was dragged, by its feature's name."""
         return self.model.project.callouts
 
     # ---- the plan
 
     @property
     def plan(self) -> InspectionPlan:
-        """Plan of the project."""
+        """Inspection plan of the project."""
         return self.model.project.inspection
 
     def free_name(self, kind: str, taken: Sequence[str] = ()) -> str:
-        """Make a name for a new feature of a kind that no other has, and that is not `taken`: "plane 2"."""
+        """Make a name for a new feature of a kind, "plane 2", that no feature has and that is not in `taken`."""
         return self._numbered(words.usual_name(kind), 1, taken)
 
     def _numbered(self, name: str, number: int, taken: Sequence[str] = ()) -> str:
@@ -118,7 +118,7 @@ class InspectFeatures(QObject):
         return f"{name} {number}"
 
     def complaint(self, spec: FeatureSpec, instead_of: str = "") -> str:
-        """Give the reason why the plan would be wrong with this feature (in place of another), or ""."""
+        """Return a sentence on why the plan would be wrong with the feature `spec`; "" if it would not be."""
         try:
             self._with(spec, instead_of).ordered()
         except InputError as error:
@@ -126,20 +126,20 @@ class InspectFeatures(QObject):
         return ""
 
     def put(self, spec: FeatureSpec, instead_of: str = "") -> None:
-        """Add a feature, or change the one called `instead_of`; undoable. Others follow when it is given a new name."""
+        """Add a feature to the plan, or replace the one called `instead_of`; undoable."""
         plan = self._with(spec, instead_of)
         label = tr("change {name}", name=spec.name) if instead_of else tr("add {name}", name=spec.name)
         self.chosen = spec.name
         self.put_plan(plan, label, {instead_of: spec.name})
 
     def add(self, specs: Sequence[FeatureSpec]) -> None:
-        """Add features, the last one made of the others, and choose it; one edit, undoable."""
+        """Add features, of which the last is made of the others, and choose the last; one edit, undoable."""
         self.chosen = specs[-1].name
         plan = replace(self.plan, features=(*self.plan.features, *specs))
         self.put_plan(plan, tr("add {name}", name=self.chosen))
 
     def duplicate(self, name: str) -> None:
-        """Insert a copy of a feature below it and choose it; undoable."""
+        """Insert a copy of the feature called `name` below it, and choose the copy; undoable."""
         if name not in self.plan.names:
             return
         spec, place = self.plan.feature(name), self.plan.names.index(name) + 1
@@ -150,7 +150,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=features), tr("duplicate {name}", name=name))
 
     def remove(self, name: str) -> None:
-        """Remove a feature from the plan; undoable. One that others rest on stays, and a notice says which."""
+        """Remove the feature called `name` from the plan, unless others depend on it; undoable."""
         why_not = self.cannot_remove(name)
         if why_not:
             self.bench.notices.warning(why_not)
@@ -162,7 +162,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {name}", name=name))
 
     def cannot_remove(self, name: str) -> str:
-        """Give the reason why a feature cannot be removed, or "": the features that rest on it."""
+        """Return a sentence on which features depend on the feature called `name`; "" if none does."""
         frame = self.plan.frame.names if self.plan.frame is not None else ()
         resting = [one.name for one in self.plan.features if name in one.needs]
         if name in frame:
@@ -174,7 +174,7 @@ class InspectFeatures(QObject):
         return ""
 
     def move(self, name: str, by: int) -> None:
-        """Move a feature up (−1) or down (+1) in the list; undoable."""
+        """Move the feature called `name` up (−1) or down (+1) in the list; undoable."""
         names = list(self.plan.names)
         if name not in names or not 0 <= names.index(name) + by < len(names):
             return
@@ -183,7 +183,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=tuple(features)), tr("move {name}", name=name))
 
     def put_plan(self, plan: InspectionPlan, label: str, renamed: Mapping[str, str] = NO_OTHERS) -> None:
-        """Replace the plan by this one, in which features are `renamed`; undoable. Callouts stay where they are."""
+        """Replace the project's plan, under the edit's name `label`; undoable. Callouts stay at their places."""
         moved = {renamed.get(name, name): to for name, to in self.callouts_moved.items()}
         callouts = {name: to for name, to in moved.items() if name in plan.names or name not in self.plan.names}
         self.model.edit(label, replace(self.model.project, inspection=plan, callouts=callouts))
@@ -199,7 +199,7 @@ class InspectFeatures(QObject):
 
     @property
     def buttons(self) -> FeaturesButtons:
-        """Reason for each disabled button, for the chosen feature."""
+        """Reason why each button of the list is disabled for the chosen feature; "" if it is enabled."""
         names = self.plan.names
         return features_buttons(
             FeaturesFacts(
@@ -215,11 +215,11 @@ class InspectFeatures(QObject):
 
     @property
     def up_to_date(self) -> bool:
-        """Whether the results are of this plan and this scan."""
+        """Whether the results shown are of the present plan and the present scan."""
         return up_to_date("inspection", self.model.project, self.model.results)
 
     def measure(self) -> None:
-        """Measure the whole plan on the scan among the results."""
+        """Measure the whole plan on the scan in the project's results, in the background."""
         model, project, folder = self.model, self.model.project, self.model.folder
         if folder is None or self.buttons.measure:
             return
@@ -233,12 +233,12 @@ class InspectFeatures(QObject):
         self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
     def measure_first(self) -> None:
-        """Measure a plan that has not been measured yet, if it can be; later, every edit is measured automatically."""
+        """Measure the plan if it was never measured; after that, each edit is measured automatically."""
         if "inspection" not in self.model.results:
             self.measure()
 
     def follow(self, before: InspectionPlan) -> None:
-        """Follow an edit of the plan, or its undo: what was measured once is measured anew."""
+        """Show the results of the edited plan, and measure it again if the plan `before` was measured."""
         if self.plan == before:
             return
         self.problem = ""
@@ -247,7 +247,7 @@ class InspectFeatures(QObject):
         self._measure_again()
 
     def look(self) -> None:
-        """Draw the earlier results, if they are still of this plan and this scan."""
+        """Read the project's results of the plan, if they are of the present plan and scan."""
         folder = self.model.folder
         if folder is None or self.measuring or not self.up_to_date or self.shown is not None:
             return
@@ -261,36 +261,33 @@ class InspectFeatures(QObject):
 
     @property
     def shown(self) -> ShownInspection | None:
-        """Results of the plan, if they are still valid."""
+        """Results of the plan, as they are drawn; None if they are not of the present plan and scan."""
         return self._shown if self._shown_for == self._wanted() else None
 
     @property
     def pose_camera_part(self) -> Pose | None:
-        """Pose from part to camera coordinates, if it is known and still of this plan."""
+        """Pose of the part coordinates in the camera frame; None if it is not known for this plan."""
         frame = self.plan.frame
         if frame is None or self._shown is None or self._shown_for is None or self._shown_for[0].frame != frame:
             return None
         return None if any(self.result(name) is None for name in frame.names) else self._shown.pose_camera_part
 
     def result(self, name: str) -> ShownFeature | None:
-        """Return the result of a feature; None if it is not measured, or something it depends on has changed since."""
+        """Return the result of the feature called `name`; None if it is not measured or out of date."""
         found = self._earlier(name)
         if found is None or self._shown_for is None:
             return None
         return found if self._shown_for[0].asks_the_same(name, self.plan) else None
 
     def outdated(self, name: str) -> ShownFeature | None:
-        """Return the result of a feature on this scan before it, or what it rests on, was changed.
-
-        None if still valid.
-        """
+        """Return the result that the feature called `name` had before an edit; None if it is up to date or has none."""
         found = self._earlier(name)
         if found is None or name not in self.plan.names or found.kind != self.plan.feature(name).kind:
             return None
         return None if self.result(name) is found else found
 
     def rests_on(self, name: str) -> tuple[list[ShownFeature], dict[str, list[ShownFeature]]]:
-        """List the features whose points a feature is made of: itself or its parts, and its datums by their letters.
+        """List the features whose points the feature called `name` uses, and its datums by their letters.
 
         A part that is made of others itself stands for theirs. What is not measured is left out.
         """
@@ -311,20 +308,20 @@ class InspectFeatures(QObject):
         return [one for one in found if one is not None]
 
     def choose(self, name: str) -> None:
-        """Choose a feature and show its points; "" for none."""
+        """Choose the feature called `name` and show its points; "" chooses none."""
         if name != self.chosen:
             self.chosen = name
             self.changed.emit()
 
     def move_callout(self, name: str, moved: tuple[float, float] | None) -> None:
-        """Store the place to which a feature's callout was dragged; None: where there is room. undoable."""
+        """Store by how many px (right, down) a feature's callout was dragged; None resets it. Undoable."""
         callouts = {other: to for other, to in self.callouts_moved.items() if other != name}
         if moved is not None:
             callouts[name] = moved
         self.model.edit(tr("move the plate of a result"), replace(self.model.project, callouts=callouts))
 
     def forget(self) -> None:
-        """Forget all results: another project is open."""
+        """Drop all results of features, as another project is open."""
         self._shown, self._shown_for = None, None
         self.problem = self.chosen = ""
 

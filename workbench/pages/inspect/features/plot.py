@@ -41,7 +41,7 @@ class PlotTab(QWidget):
         in_column(self.words, (both, 1), on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
-        """Show the state of the presenter; drawn anew only for another feature or result."""
+        """Show the chart of the chosen feature: a section's profile, or the distribution of deviations."""
         features = self._features
         result = features.result(features.chosen)
         wanted = (features.chosen, result)

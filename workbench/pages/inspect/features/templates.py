@@ -26,24 +26,24 @@ class InspectTemplates:
 
     @property
     def recent(self) -> list[Path]:
-        """Templates used last, the newest first; those that are gone are left out."""
+        """Paths of the templates used last, the newest first, without files that are gone."""
         paths = [Path(line) for line in self._bench.settings.text(RECENT, "").split("\n") if line]
         return [path for path in paths if path.is_file()]
 
     @property
     def cannot_save(self) -> str:
-        """Reason why no template can be made of this plan, or ""."""
+        """Reason why the plan cannot be saved as a template; "" if it can."""
         return self._features.buttons.save
 
     def place(self) -> Path:
-        """Return the proposed path of a new template: beside the last one, or beside the projects."""
+        """Propose the path of a new template: beside the last one, or in the folder of projects."""
         recent = self.recent
         folder = recent[0].parent if recent else self._bench.settings.projects_folder
         name = self._model.project.info.part or "plan"
         return folder / f"{''.join(c if c.isalnum() or c in ' -_' else '-' for c in name)}.toml"
 
     def save(self, path: Path) -> None:
-        """Write the plan to a file; names of nominal surfaces in it become whole paths."""
+        """Write the plan to a template file; names of nominal surfaces become absolute paths."""
         folder = self._model.folder
         if folder is None or self.cannot_save:
             return
@@ -59,7 +59,7 @@ class InspectTemplates:
         )
 
     def take(self, path: Path) -> None:
-        """Replace the plan by that in this file, and measure it if there is a scan; undoable."""
+        """Replace the plan by the template in the file `path`, and measure it if there is a scan; undoable."""
         folder = self._model.folder
         if folder is None:
             return

@@ -52,7 +52,7 @@ def new_feature(
     nominal: str = "",
     section: Section | None = None,
 ) -> FeatureSpec:
-    """Make a feature with default values: of the last two elements; with `section`, or a cut across the part."""
+    """Make a feature of a kind with usual values; if it is made of elements, of the last two of the plan."""
     made, found = FeatureSpec(name, kind), kind_named(kind)
     if found.made_of:
         made = replace(made, of=elements(plan, found)[-found.made_of :])
@@ -68,12 +68,12 @@ def new_feature(
 
 
 def elements(plan: InspectionPlan, kind: FeatureKind) -> tuple[str, ...]:
-    """List the features that one of a kind can be made of, by name."""
+    """List the names of the plan's features that a feature of this kind can be made of."""
     return tuple(one.name for one in plan.features if kind_of(one).element in kind.made_from)
 
 
 def why_not(kind: str, plan: InspectionPlan) -> str:
-    """Give the reason why a feature of this kind cannot be added to the plan, or ""."""
+    """Return the reason why a feature of this kind cannot be added to the plan; "" if it can."""
     found = kind_named(kind)
     if len(elements(plan, found)) >= found.made_of:
         return ""
@@ -85,7 +85,7 @@ def why_not(kind: str, plan: InspectionPlan) -> str:
 
 
 def values_of(spec: FeatureSpec) -> dict[str, Any]:
-    """Return all fields that a feature has."""
+    """Return all settings of a feature as the fields of its form."""
     values: dict[str, Any] = {"name": spec.name}
     values |= {f"of {place}": name for place, name in enumerate(spec.of)}
     if not kind_of(spec).made_of:
@@ -108,7 +108,7 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
 
 
 def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
-    """Change one field of the feature; ValueError with a sentence if that is impossible."""
+    """Return the feature with one field changed; ValueError, a sentence, if the value is impossible."""
     group, _, rest = key.partition(" ")
     if key == "name":
         return replace(spec, name=str(value).strip())
@@ -136,12 +136,12 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
 
 
 def own_regions(spec: FeatureSpec) -> tuple[Region, ...]:
-    """Return the regions of its points; none for a feature made of others."""
+    """Return the regions that hold a feature's points; () for a feature made of others."""
     return () if kind_of(spec).made_of else spec.regions
 
 
 def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
-    """Replace the region at this place."""
+    """Return the feature with its region number `place` replaced."""
     return replace(spec, regions=(*spec.regions[:place], region, *spec.regions[place + 1 :]))
 
 
@@ -149,10 +149,7 @@ def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
 
 
 def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
-    """Return the limits of a result: nominal value and permitted deviations in mm or degrees.
-
-    None where there is none.
-    """
+    """Return the nominal value and the permitted deviations of a result, in mm or degrees; None where none is set."""
     limits = dict(spec.limits).get(result)
     keys = [f"limits {side} {result}" for side in SIDES]
     if limits is None:
@@ -162,7 +159,7 @@ def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
 
 
 def with_limits(spec: FeatureSpec, result: str, values: Mapping[str, float | None]) -> FeatureSpec:
-    """Set a result's limits, by the keys of `limits_values`; ValueError with a sentence if one is missing."""
+    """Return the feature with the limits of a result changed; ValueError, a sentence, if one is missing."""
     nominal, lower, upper = (values.get(f"limits {side} {result}") for side in SIDES)
     kept = tuple(one for one in spec.limits if one[0] != result)
     kind = results_of(spec)[result]
@@ -218,7 +215,7 @@ def _sourced(source: str) -> Region:
 
 
 def around(source: str, low: Place, high: Place) -> Region:
-    """Make the sphere or the box of part coordinates that encloses a box."""
+    """Make the sphere or box region, in part coordinates, that encloses the box from `low` to `high`, in mm."""
     if source == BOX:
         return InBox(low, high)
     (x, y, z), radius = ((a + b) / 2 for a, b in zip(low, high, strict=True)), math.dist(low, high) / 2
@@ -234,7 +231,7 @@ def _with_sphere(spec: FeatureSpec, place: int, field: str, value: Any) -> Featu
 
 
 def with_box(spec: FeatureSpec, place: int, values: Mapping[str, Any]) -> FeatureSpec:
-    """Set a box by both its corners, as they are in the fields; ValueError with a sentence."""
+    """Return the feature with box region number `place` between the corners in the fields; ValueError, a sentence."""
     low, high = (_place(str(values[f"{corner} {place}"])) for corner in CORNERS)
     if any(a >= b for a, b in zip(low, high, strict=True)):
         raise ValueError(tr("Each of the smallest x, y and z is to be below the largest one."))
@@ -357,7 +354,7 @@ def _with_cut(spec: FeatureSpec, section: Section, place: int, field: str, value
 def with_new_cut(
     spec: FeatureSpec, stretches: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 10.0), (20.0, 30.0))
 ) -> FeatureSpec:
-    """Add one measurement to a section: the height over the second of two `stretches`."""
+    """Return the section with one measurement added: the height over the second of two `stretches`, in mm."""
     if spec.section is None:
         return spec
     names, number = {cut.name for cut in spec.section.cuts}, 1
@@ -368,7 +365,7 @@ def with_new_cut(
 
 
 def without_cut(spec: FeatureSpec, place: int) -> FeatureSpec:
-    """Remove one measurement from a section, with its limits."""
+    """Return the section without its measurement number `place` and that one's limits."""
     if spec.section is None:
         return spec
     cuts, gone = spec.section.cuts, spec.section.cuts[place].name

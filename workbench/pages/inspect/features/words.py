@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 
 def title(kind: FeatureKind) -> str:
-    """Return the name of a kind of feature in a menu."""
+    """Return the name of a kind of feature as a menu shows it."""
     return f"{tr(kind.title)} …" if kind.nominal_file else tr(kind.title)
 
 
 def usual_name(kind: str) -> str:
-    """Return the name of a new feature of a kind in the language of the window, before its number."""
+    """Return the name for new features of a kind in the window's language, without a number."""
     names = {
         "plane": tr("plane"),
         "sphere": tr("sphere"),
@@ -49,7 +49,7 @@ def usual_name(kind: str) -> str:
 
 
 def source_of_none(spec: FeatureSpec) -> str:
-    """Return the text for a region that was not drawn."""
+    """Return the text that stands for a region if none was drawn: which points are used then."""
     kind = kind_of(spec)
     if kind.automatic == "all points":
         return tr("the whole scan")
@@ -59,12 +59,12 @@ def source_of_none(spec: FeatureSpec) -> str:
 
 
 def value(row: Characteristic) -> str:
-    """Write a value with its U: '50.012 ± 0.024 mm'."""
+    """Write a characteristic's value with its U: '50.012 ± 0.024 mm'."""
     return characteristic_facts(row)[0].text(wording()) if math.isfinite(row.U) else value_line(row, wording())
 
 
 def tip(row: Characteristic) -> str:
-    """Write all about one result: value with k, the decision and its reason, the quantity."""
+    """Write the tooltip of a result: value with k, verdict and its reason, what was measured."""
     lines = [named(shown_name(row, wording()), value_line(row, wording()))]
     if row.verdict:
         lines.append(decision_sentence(row, wording()))
@@ -74,22 +74,22 @@ def tip(row: Characteristic) -> str:
 
 
 def short_name(row: Characteristic, feature: str) -> str:
-    """Return the name of a result under its feature."""
+    """Write the name of a result without the name of its `feature`: "flatness"."""
     return name_within(row, feature, wording())
 
 
 def verdict(feature: ShownFeature) -> Verdict:
-    """Return the worst of a feature's verdicts."""
+    """Return the worst verdict among a feature's results."""
     return Verdict.worst(row.verdict for row in feature.rows)
 
 
 def result_rows(feature: ShownFeature) -> list[ValueRow]:
-    """Make a row of each result of a feature with its uncertainty."""
+    """Make a row of name, value with U, and tooltip for each result of a feature."""
     return [(short_name(row, feature.name), value(row), tip(row), "") for row in feature.rows]
 
 
 def class_rows(found: ShownDeviations) -> list[ValueRow]:
-    """Make a row with the share of each class of deviations, outwards first."""
+    """Make a row for each class of deviations with its share of the surface, the outward classes first."""
     share = tr("Share of all places compared")
     rows: list[ValueRow] = [(tr("Deviation [mm]"), tr("share"), share, "")]
     for one in reversed(found.classes):
@@ -105,12 +105,12 @@ def class_rows(found: ShownDeviations) -> list[ValueRow]:
 
 
 def used(feature: ShownFeature) -> str:
-    """Write how many points it rests on."""
+    """Write how many points a feature rests on."""
     return tr("{count} points used", count=grouped(feature.used)) if feature.used else ""
 
 
 def required_frames(plan: InspectionPlan) -> dict[str, Frame]:
-    """Make the feature control frames, by the names of the characteristics that they require."""
+    """Make the feature control frames to draw, by the name of the characteristic that each limits."""
     return {
         name: Frame(one.symbol, (f"{one.round}{wording().general(one.zone_mm)}", *one.datums))
         for name, one in control_frames(plan).items()
@@ -118,12 +118,12 @@ def required_frames(plan: InspectionPlan) -> dict[str, Frame]:
 
 
 def datum_frames(plan: InspectionPlan) -> dict[str, Frame]:
-    """Make the letters of datums, by the names of the features that are datums."""
+    """Make the framed datum letters to draw, by the name of the feature that is the datum."""
     return {name: Frame(None, (letter,)) for name, letter in datum_letters(plan).items()}
 
 
 def frames_of(spec: FeatureSpec, plan: InspectionPlan) -> list[Frame]:
-    """Make the frames of a feature: its datum letter, if any, and its requirements on form, orientation and place."""
+    """Make the frames to draw for a feature: its datum letter, if it has one, and its feature control frames."""
     asked, datum = required_frames(plan), datum_frames(plan).get(spec.name)
     own = [asked[name] for result in results_of(spec) if (name := f"{spec.name} {result}") in asked]
     return own if datum is None else [datum, *own]

@@ -51,7 +51,7 @@ class RepeatsButtons(NamedTuple):
 
 
 def repeats_buttons(facts: RepeatsFacts) -> RepeatsButtons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why each button of the repeats is disabled; "" for each that is enabled."""
     none = "" if facts.some else tr("There are no repeats yet.")
     choose = "" if facts.chosen else tr("Choose a repeat in the table first.")
     return RepeatsButtons(_why_not_add(facts), none or choose, none)
@@ -85,21 +85,21 @@ class InspectRepeats(QObject):
 
     @property
     def all(self) -> tuple[Repeat, ...]:
-        """Repeats in the order they were added."""
+        """Repeated measurements in the project, in the order they were added."""
         return self._model.project.repeats
 
     @property
     def spec(self) -> GaugeSpec:
-        """Nominal value and tolerance for judging them."""
+        """Nominal value and tolerance by which the repeats are judged."""
         return self._faces.spec
 
     @property
     def cannot_add(self) -> str:
-        """Reason why the thickness shown cannot be added, or ""."""
+        """Reason why the thickness shown cannot be added to the repeats; "" if it can."""
         return self.buttons().add
 
     def buttons(self, *, chosen: bool = False) -> RepeatsButtons:
-        """Return the reason for each disabled button, where one of them is `chosen` or none."""
+        """Return why each button is disabled ("" if enabled); `chosen`: whether a repeat is selected."""
         scan = self._scan
         return repeats_buttons(
             RepeatsFacts(
@@ -115,7 +115,7 @@ class InspectRepeats(QObject):
         )
 
     def add(self) -> None:
-        """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""
+        """Add the thickness of the scan shown to the repeats, unless that scan is there already; undoable."""
         why_not, gauge, view = self.cannot_add, self._scan.gauge, self._scan.view
         scan = self._model.results.get("scan")
         if why_not or gauge is None or view is None or scan is None:
@@ -133,7 +133,7 @@ class InspectRepeats(QObject):
         self._put((*self.all, repeat), tr("add a repeat"))
 
     def remove(self, rows: Sequence[int]) -> None:
-        """Remove repeats from the series; undoable."""
+        """Remove the repeats with these row numbers; undoable."""
         kept = tuple(repeat for row, repeat in enumerate(self.all) if row not in set(rows))
         count = len(self.all) - len(kept)
         label = tr("remove a repeat") if count == 1 else tr("remove {count} repeats", count=count)
@@ -146,7 +146,7 @@ class InspectRepeats(QObject):
         return repeat_statistics([repeat.thickness_mm for repeat in self.all], self.spec.nominal_mm)
 
     def calibrations(self) -> int:
-        """Count the different calibrations they were measured with."""
+        """Count the different calibrations that the repeats were measured with."""
         return len({repeat.calibration_id for repeat in self.all})
 
     def _put(self, repeats: tuple[Repeat, ...], label: str) -> None:

@@ -80,7 +80,7 @@ class RepeatsTab(QWidget):
         in_column(split, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the table of the repeats, their statistics, and the run chart."""
         repeats, spec = self._repeats, self._repeats.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
