@@ -20,7 +20,7 @@ def in_8_bit(picture: NDArray[Any], brightest: float) -> NDArray[np.uint8]:
 
 
 def white_level(picture: NDArray[Any]) -> float:
-    """Compute the largest grey level of a camera with the bits that `picture` uses, to be shown as white."""
+    """Compute the grey level to show as white: the largest of a camera with as many bits as `picture` uses."""
     if picture.dtype == np.uint8:
         return 255.0
     return float(2 ** max(int(picture.max()).bit_length(), _LEAST_BITS) - 1)

@@ -26,7 +26,7 @@ Gaussian σ of 0.5 px gives them 0.23."""
 
 
 def standing_out(picture: Picture) -> NDArray[np.int64]:
-    """Find pixels of a picture (H, W) brighter than all around them as no blurred light is; (K,) places, row-major.
+    """Find pixels of a picture (H, W) too much brighter than their neighbours for blurred light: (K,) flat indices.
 
     Raises
     ------

@@ -49,7 +49,7 @@ _ROUGH_SHARE = 0.1
 
 
 def is_interpolated(picture: NDArray[Any]) -> bool:
-    """Whether a picture (H, W) is interpolated from a colour mosaic, by how pixels differ within tiles of 2 × 2."""
+    """Whether colours of a picture (H, W) were interpolated from a mosaic, by differences within tiles of 2 × 2 px."""
     rows, columns = (size // PERIOD_PX for size in picture.shape)
     if min(rows, columns) < PERIOD_PX:
         return False
@@ -89,7 +89,7 @@ class Sites:
         return None if stripe is None else replace(stripe, width_px=stripe.width_px * self.period)
 
     def in_whole_picture(self, lines: Sequence[Centreline]) -> tuple[Centreline, ...]:
-        """Convert centrelines from px of the sites to px of the whole picture; points are then about a period apart."""
+        """Convert centrelines from px of these sites to px of the whole picture, where points are further apart."""
         if self == ALL_SITES:
             return tuple(lines)
         return tuple(

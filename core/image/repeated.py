@@ -17,9 +17,9 @@ _ROWS = 8
 
 
 def pixels_of(picture: NDArray[Any]) -> bytes:
-    """Compute a hash of the pixels of a picture, whatever its file: equal for equal pixels alone.
+    """Compute a hash of a picture's pixels, by which equal pictures are known; b"" if all its pixels are equal.
 
-    Nothing (b"") for a picture whose pixels are all the same, as an all black one: it has no noise to know it by.
+    One without noise, as an all black one, has nothing to know it by.
     """
     rows = picture[::_ROWS]
     if rows.min() == rows.max() and picture.min() == picture.max():

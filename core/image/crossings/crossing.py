@@ -119,14 +119,14 @@ Lines = Sequence[Centreline] | Stack
 def cross_centrelines(
     a: Lines, b: Lines, half_length_px: float = HALF_LENGTH_PX, min_angle: float = LEAST_ANGLE
 ) -> list[tuple[int, int, Crossing]]:
-    """Find all crossings of the pieces `a` of one picture with the pieces `b` of another; see `search_crossings`."""
+    """Find all crossings of centrelines `a` of one picture with `b` of another: (index, index, crossing)."""
     return list(search_crossings(a, b, half_length_px, min_angle).found)
 
 
 def search_crossings(
     a: Lines, b: Lines, half_length_px: float = HALF_LENGTH_PX, min_angle: float = LEAST_ANGLE
 ) -> CrossingSearch:
-    """Find all crossings of the pieces `a` of one picture with the pieces `b` of another, and count what is left out.
+    """Find all crossings of centrelines `a` of one picture with `b` of another, and count those left out, by reason.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ _LONGEST_SHARE_PX = 3.0  # of the line that a point beside a gap stands for on t
 
 
 def bin_length(cell_px: float, correlation_px: float) -> float:
-    """Choose the length of a line's bins in px: a whole number of them is a cell."""
+    """Choose the length in px of the bins of a line, a whole fraction of `cell_px` and about `correlation_px`."""
     return cell_px / max(1, math.floor(cell_px / max(correlation_px, _SHORTEST_PX)))
 
 

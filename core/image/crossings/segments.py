@@ -118,7 +118,7 @@ def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
 def meeting_segments(
     a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
 ) -> NDArray[np.int64]:
-    """Find segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
+    """Find the segments of pieces `a` that intersect those of `b`: (K, 4) piece and first point, of a and of b."""
     found, count = new_index_table(16, 4), 0
     for p, q in _overlapping(boxes_a, boxes_b):
         for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
@@ -164,13 +164,13 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
 
 @inlined()
 def boxes_apart(one: Array, other: Array) -> bool:
-    """Whether the boxes of two runs, a row (7,) of the table of boxes each, do not overlap."""
+    """Whether the bounding boxes of two runs of segments, rows (7,) of their tables, do not overlap."""
     return bool(one[5] < other[3] or other[5] < one[3] or one[6] < other[4] or other[6] < one[4])
 
 
 @inlined()
 def segment_apart(p: Array, q: Array, box: Array) -> bool:
-    """Whether the segment from p (≥ 2,) to q passes a run's `box` (7,) on one of its sides."""
+    """Whether the segment from p (≥ 2,) to q is on the outside of one side of a bounding `box` (7,)."""
     return bool(
         max(p[0], q[0]) < box[3] or box[5] < min(p[0], q[0]) or max(p[1], q[1]) < box[4] or box[6] < min(p[1], q[1])
     )

@@ -95,7 +95,10 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
 
 @compiled(inline=True)
 def smooth_curve(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
-    """Fit the curve through a run (N, ≥ 2) by `parabolas` over ± 8 filter σ, shorter ones where the run is bent."""
+    """Fit a smooth curve through a run (N, ≥ 2): (N, 5) u, v, n_u, n_v, curvature by local parabolas.
+
+    By `parabolas` over ± 8 filter σ, shorter ones where the run is bent.
+    """
     curve = parabolas(run, arc, weight, _ARM * filter_px)
     sample = new_row((len(curve) + _BEND_SAMPLE - 1) // _BEND_SAMPLE)
     for k in range(len(sample)):

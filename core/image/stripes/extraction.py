@@ -81,7 +81,10 @@ _SHORTEST_PIECE = 7.0  # filter σ: two independent points, at 2√π filter σ 
 
 
 def correlation_length_px(settings: StripeSettings) -> float:
-    """Compute the length in px along the stripe over which the noise of neighbouring points counts as one: 2√π·g."""
+    """Compute the length in px along a stripe over which the noise of neighbouring points counts as one error.
+
+    It is 2√π·g, with g the σ of the filter.
+    """
     return correlation_length(settings.filter_px)
 
 

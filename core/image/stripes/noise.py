@@ -116,7 +116,7 @@ class NoiseModel:
 
 
 def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None) -> NoiseModel:
-    """Estimate the noise of one picture (H, W) from its quiet tiles.
+    """Estimate the noise of one picture (H, W) from those of its tiles that have the least structure.
 
     Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed. Where
     structure is in every tile (small squares, edges all over) it still rules their mean squares; then the quieter

@@ -65,7 +65,7 @@ class Piece:
 
     @property
     def weight(self) -> Array:
-        """Weight of each point in the smooth curve through them, (N,)."""
+        """Weight (N,) of each point in fitting the smooth curve through the piece."""
         return np.where(self.usable, 1.0, _UNUSABLE_WEIGHT)
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:

@@ -59,7 +59,7 @@ def added_in_squares(sigma: Array, extra: float) -> Array:
 
 
 def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Array:
-    """Compute the standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
+    """Compute the standard uncertainty (N,) in px across the line of its points from read noise and shot noise."""
     read, shot = noise.read_grey**2, noise.grey_per_electron
     sigma: Array = _noise_sigma(profiles.height, profiles.width, profiles.background, read, shot, filter_px)
     return sigma
@@ -139,7 +139,7 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
 
 @compiled(fastmath=True)
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
-    """Flag the points (N, ≥ 2) with more than 1 % of the filter's weight on saturated pixels, (N,)."""
+    """Flag the points (N, ≥ 2) for which more than 1 % of the filter's weight is on saturated pixels: (N,)."""
     reach = math.ceil(_SATURATED_REACH * filter_px)
     saturated = np.zeros(len(points), dtype=np.bool_)
     limit = _SATURATED_SHARE * 2 * math.pi * filter_px * filter_px

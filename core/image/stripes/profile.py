@@ -88,7 +88,7 @@ class Fits(NamedTuple):
 
 
 def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
-    """Smooth cross-sections along the stripe by medians over many grains of speckle, and blur them by the pixel."""
+    """Smooth the cross-sections of a run along it, by medians that speckle does not disturb."""
     stride = _stride(filter_px)
     at, length = _places(len(profiles.height), stride), _odd(_LONG_STRETCH * filter_px / stride)
     height, background, width = _smoothed(profiles.height, profiles.background, profiles.width, at, length)
@@ -98,7 +98,7 @@ def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
 def measure_profiles(
     picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float
 ) -> Profiles:
-    """Measure the cross-sections at every point of a `run` (N, ≥ 4): u, v, n_u, n_v."""
+    """Measure height, background, width and skewness of a stripe across each point of a `run` (N, ≥ 4)."""
     fits = fit_profiles(picture, state, run, stripe_px, filter_px)
     return profiles_along(arc_length(run), slice(0, len(run)), fits, stripe_px, filter_px)
 

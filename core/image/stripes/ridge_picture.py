@@ -20,7 +20,7 @@ from core.model.arrays import Array
 
 
 def ridge_strength(picture: NDArray[np.float32], settings: StripeSettings) -> NDArray[np.float32]:
-    """Compute the ridge strength of each pixel: the height of a stripe of this width with the same filter response.
+    """Compute for each pixel (H, W) the height in grey levels of a stripe of this width with the same filter response.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ def median(values: Array) -> float:
 
 @inlined()
 def quantile_of_magnitudes(values: Array, share: float) -> float:
-    """Compute the magnitude |value| that `share` of the `values` (N,) do not exceed."""
+    """Compute the quantile `share` of the magnitudes |value| of `values` (N,)."""
     k = min(int(share * len(values)), len(values) - 1)
     sizes = new_row(len(values))
     for i in range(len(values)):

@@ -36,7 +36,7 @@ _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 
 @compiled(inline=True)
 def arc_length(run: Array) -> Array:
-    """Compute the length along a run (N, ≥ 2) up to each point, in pixels."""
+    """Compute the length in px along a run (N, ≥ 2) from its first point to each point, (N,)."""
     arc = new_row(len(run))
     arc[0] = 0.0
     for k in range(1, len(run)):
@@ -46,12 +46,12 @@ def arc_length(run: Array) -> Array:
 
 
 def correlation_length(filter_px: float) -> float:
-    """Compute the length in px along the stripe over which the noise of its points counts as one, 2√π·g."""
+    """Compute the length in px, 2√π σ of the filter, over which the noise of a stripe's points counts as one error."""
     return 2 * math.sqrt(math.pi) * filter_px
 
 
 def cut_ends(run: Array, filter_px: float, shape: tuple[int, ...]) -> Array:
-    """Cut a run (N, 5) u, v, n_u, n_v, response where the response falls to half at an end, and END_TRIM_PX more.
+    """Cut the ends off a run (N, 5) u, v, n_u, n_v, response where its response falls to half, and a few px more.
 
     Where it only stops because the filter would leave the picture (`shape`), the stripe goes on: nothing is cut.
     """
@@ -126,7 +126,7 @@ def _real_end(arc: Array, response: Array, filter_px: float) -> float:
 
 @compiled()
 def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tuple[int, int]:
-    """Find first and past-the-last point between shadows at a run's ends, from height and width (N,) of its section.
+    """Find first and past-the-last point of a run between shadows at its ends, by height and width (N,).
 
     An oblique shadow cuts the stripe on one side first and pulls the line to the other while its crest is still as
     bright as before. What gives it away is height · width², which speckle hardly changes: its grains make the stripe

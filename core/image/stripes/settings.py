@@ -44,7 +44,7 @@ _LOW_SHARE = 0.4  # and goes on down to this share of that
 
 
 def choose_settings(picture: NDArray[np.float32], full_scale: float) -> StripeSettings | None:
-    """Choose width and contrast of the stripes in a picture; None when it shows no stripe.
+    """Choose width and contrast of the stripes from a picture (H, W); None if it shows no stripe.
 
     Parameters
     ----------

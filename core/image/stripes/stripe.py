@@ -53,12 +53,12 @@ class StripeSettings:
 
     @property
     def stripe_px(self) -> float:
-        """σ of the stripe's cross-section in pixels."""
+        """Gaussian σ in px of the stripe's cross-section."""
         return self.width_px / WIDTH_IN_SIGMA
 
     @property
     def filter_px(self) -> float:
-        """σ of the Gaussian filter in pixels."""
+        """Gaussian σ in px of the filter that suits the stripe."""
         return filter_for(self.stripe_px)
 
 

@@ -49,7 +49,7 @@ _KIND = Field("plane_target.kind", whole=True)
 def detect_black_square(
     square: BlackSquare, picture: Picture, name: str = "", camera: Camera | None = None
 ) -> TargetView:
-    """Find the corners of `square` in `picture` (H, W), in its order, with covariance from the line fits.
+    """Find the corners of `square` in `picture` (H, W), in the order of `square.points`, with covariance.
 
     Edge points are the steepest places of profiles across each edge, one per pixel of edge. Those that a laser stripe
     disturbs are left out: by the level of the dark or the bright side, and by Tukey's weights in the line fit. Lines

@@ -90,7 +90,7 @@ def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
 
 
 def nearest_to_middle(choices: list[Place], grid: Array, board: Checkerboard) -> Place:
-    """Choose the place whose corners `grid` (R, C, 2) lie nearest to the board's middle."""
+    """Choose of `choices` the place on the board that puts the corners `grid` (R, C, 2) nearest to its middle."""
     middle = board.points.mean(axis=0)
     return min(choices, key=lambda place: float(np.linalg.norm(on_board(place, grid, board)[1].mean(axis=0) - middle)))
 

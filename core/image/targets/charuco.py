@@ -57,7 +57,7 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
 
 
 def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
-    """Make OpenCV's dictionary of the markers of `board`.
+    """Make OpenCV's dictionary of as many markers as `board` has.
 
     Raises
     ------

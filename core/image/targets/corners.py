@@ -52,7 +52,7 @@ def spacing(grid: Array) -> Array:
 
 
 def squares_around(picture: Picture, corner: Array, along: Array, down: Array, share: float = 0.4) -> Array:
-    """Sample grey levels (N, 4) in the four squares that meet at `corner` (N, 2), NaN outside the picture.
+    """Sample grey levels (N, 4) in the four squares that meet at each `corner` (N, 2); NaN outside the picture.
 
     `along` and `down` (N, 2) lead to the next corners, `share` tells how far into the squares to look (0.5: their
     middles); order: before-above, after-above, after-below, before-below.
@@ -101,7 +101,7 @@ def is_even(grid: Array) -> bool:
 
 
 def steps_of(grid: Array) -> tuple[Array, Array]:
-    """Compute local steps to the next corner along rows and down columns of `grid` (R, C, 2); each (R, C, 2)."""
+    """Compute the steps in px to the next corner along rows and down columns of `grid` (R, C, 2), (R, C, 2) each."""
     return np.gradient(grid, axis=1), np.gradient(grid, axis=0)
 
 
@@ -168,7 +168,7 @@ def _board_reaches_out(picture: NDArray[np.uint8], grid: Array, contrast: float)
 
 
 def refined(picture: Picture, corners: Array, half: int) -> Array:
-    """Refine `corners` (N, 2) to sub-pixel by cornerSubPix in windows of 2 `half` + 1 pixels."""
+    """Refine `corners` (N, 2) to sub-pixel by OpenCV's cornerSubPix in windows of 2 `half` + 1 pixels."""
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.001)
     start = np.ascontiguousarray(corners, dtype=np.float32).reshape(-1, 1, 2)
     return np.asarray(cv2.cornerSubPix(picture, start, (half, half), (-1, -1), stop), dtype=np.float64).reshape(-1, 2)

@@ -61,7 +61,7 @@ class _Outlines:
 
 
 def fit_dark_ellipses(picture: Picture, centres: Array, radii: Array) -> list[Ellipse | None]:
-    """Fit the outlines of dark discs near `centres` (N, 2) of about `radii` (N,) px; None where 60 % are not seen.
+    """Fit ellipses to dark discs near `centres` (N, 2) of about `radii` (N,) px; None if less than 60 % of one fits.
 
     All at a time: a fit for each costs twenty times what its sums do.
     """
@@ -182,7 +182,7 @@ def _distances(ellipses: _Ellipses, points: Array) -> Array:
 
 
 def centre_shift(homography: Array, centres: Array, radius: float) -> Array:
-    """Compute the ellipse's centre minus the image of the circle's centre, (N, 2), under `homography` (3, 3).
+    """Compute (N, 2) in px: centre of a circle's elliptic image minus the image of the circle's centre.
 
     The image of the circle x² + y² = r² about c has the dual conic H T diag(r², r², −1) Tᵀ Hᵀ; an ellipse's centre is
     the first two elements of the last column of its dual conic, over the third.

@@ -46,7 +46,7 @@ class Checkerboard:
 
     @property
     def points(self) -> Array:
-        """Inner corners (N, 3) in mm, row by row; the first one is the origin."""
+        """Inner corners of the board (N, 3) in mm, row by row; the first one is the origin."""
         return _grid(self.columns, self.rows, self.square_mm)
 
 
@@ -94,13 +94,13 @@ class Charuco:
 
     @property
     def dictionary_id(self) -> str:
-        """OpenCV's full name of the dictionary."""
+        """OpenCV's full name of the dictionary of the board's markers."""
         name = self.dictionary.upper()
         return name if name.startswith("DICT_") else f"DICT_{name}"
 
     @property
     def points(self) -> Array:
-        """Inner corners (N, 3) in mm, row by row; the origin is the board's outer corner."""
+        """Inner corners of the board (N, 3) in mm, row by row; the origin is the board's outer corner."""
         return _grid(self.columns - 1, self.rows - 1, self.square_mm) + [self.square_mm, self.square_mm, 0.0]
 
 
@@ -124,7 +124,7 @@ class CircleGrid:
 
     @property
     def points(self) -> Array:
-        """Centres (N, 3) in mm, row by row; the first one is the origin."""
+        """Centres of the circles (N, 3) in mm, row by row; the first one is the origin."""
         points = _grid(self.columns, self.rows, self.pitch_mm)
         if self.asymmetric:
             odd = np.arange(len(points)) // self.columns % 2

@@ -57,7 +57,7 @@ def check_exposure(picture: Picture, name: str) -> None:
 
 
 def grey_range(picture: Picture) -> tuple[float, float]:
-    """Compute the grey levels that leave 0.2 % of the pixels of a picture (H, W) below and above."""
+    """Compute the grey levels below and above which are 0.2 % of the pixels of a picture (H, W) each."""
     step = max(1, min(picture.shape) // 400)
     low, high = level_quantiles(picture[::step, ::step], 0.002, 0.998)
     return low, high
@@ -109,7 +109,7 @@ def resized(picture: NDArray[np.uint8], factor: float) -> tuple[NDArray[np.uint8
 
 
 def enlarged(uv: Array, factor: float) -> Array:
-    """Convert points `uv` (…, 2) of a reduced picture to px of the full one.
+    """Convert points `uv` (…, 2) of a picture reduced by `factor` to px of the full one.
 
     Pixel centres are whole numbers in both.
     """

@@ -41,7 +41,7 @@ CORNERS = 3
 
 
 def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
-    """Compute by how many px the target moved from one view to another: the median length of its points' displacements.
+    """Compute by how many px the target moved between two views: the median length of its points' displacements.
 
     The median forgives points that a laser stripe disturbs in one of the pictures. A target that looks the same turned
     round (:class:`BlackSquare`, :class:`CircleGrid`) may be numbered differently in the two views, so points are paired

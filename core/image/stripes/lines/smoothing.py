@@ -152,5 +152,5 @@ def _about(moments: Array, moved: Sequence[Array]) -> Array:
 
 
 def arc_bias(curvature: Array, half_length: float) -> Array:
-    """Compute the errors (N,) in px of parabolas fitted to ± `half_length` px of arcs of `curvature` (N,) in 1/px."""
+    """Compute how far in px parabolas fitted to ± `half_length` px of arcs of `curvature` (N,) in 1/px lie off them."""
     return 3.0 / 280.0 * curvature**3 * half_length**4

@@ -29,7 +29,7 @@ _SUSPECT = 0.5  # of the misfit that the smallest significant break leaves: with
 def split_at_breaks(
     run: Array, whole: Array, usable: NDArray[np.bool_], filter_px: float, sigma_px: Array
 ) -> list[slice]:
-    """Split a run (N, ≥ 4) at sideways jumps and kinks, leaving out what the filter rounds there.
+    """Split a run (N, ≥ 4) into slices at sideways jumps and kinks, without the points that the filter rounds there.
 
     At every point a curve y = a + b·x + c·x² with a jump and a kink at that point is fitted to both sides, up to 8
     filter σ away and leaving out the nearest 2. The run is broken where jump or kink is large and significant, given

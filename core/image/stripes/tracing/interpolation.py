@@ -20,7 +20,7 @@ def tracing_step(filter_px: float) -> int:
 
 @compiled()
 def with_points_between(run: Array, stride: int) -> Array:
-    """Interpolate a run (N, 5) u, v, n_u, n_v, response traced `stride` px apart to points one pixel apart.
+    """Interpolate a run (N, 5) u, v, n_u, n_v, response, traced in steps of `stride` px, to points one px apart.
 
     They lie on the cubic through the two neighbours on either side, or on Hermite's along the normals where a
     neighbour is missing. What a filter of σ g leaves of noise is as smooth as g, so that for g > 1.1 `stride` a point

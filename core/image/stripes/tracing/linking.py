@@ -276,14 +276,14 @@ def _follow(
 
 @inlined()
 def empty_point_grid(shape: tuple[int, int], reach: int, count: int) -> PointGrid:
-    """Make an empty grid for a picture of (height, width) px, `count` points and distances up to `reach` px."""
+    """Make a grid for finding points within `reach` px of a pixel; room for `count` points, picture of `shape`."""
     cell = _cell(reach)
     return PointGrid(np.zeros((shape[0] // cell + 1, shape[1] // cell + 1), np.int32), np.empty(count, np.int32))
 
 
 @inlined()
 def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
-    """Enlarge a grid to make room for `count` points."""
+    """Copy a grid of points, with room for `count` of them."""
     before = np.empty(count, np.int32)
     for k in range(len(grid.before)):
         before[k] = grid.before[k]
@@ -292,7 +292,7 @@ def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
 
 @inlined()
 def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
-    """Add the point number `number` of the `points` (N, ≥ 2) to the grid."""
+    """Add row `number` of `points` (N, ≥ 2), u and v in px, to the grid."""
     last, before = grid
     cell = _cell(reach)
     row, column = int(points[number, 1] + 0.5) // cell, int(points[number, 0] + 0.5) // cell

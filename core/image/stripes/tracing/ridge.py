@@ -48,7 +48,7 @@ def ridge_response(amplitude: float, stripe_px: float, filter_px: float) -> floa
 
 @lru_cache(maxsize=32)
 def kernel_table(filter_px: float) -> NDArray[np.float32]:
-    """Make the kernels (PHASES + 1, 3, ≥ 2·radius + 1): a Gaussian and its first two derivatives.
+    """Make the filter kernels (PHASES + 1, 3, ≥ 2·radius + 1) of a Gaussian and its first two derivatives.
 
     They are for points −½ … ½ px beside a pixel's centre.
     Behind the kernels' 2·radius + 1 weights there are zeros.
@@ -76,7 +76,7 @@ def ridge_at(
     v: float,
     detector: Detector,
 ) -> tuple[float, float, float, float]:
-    """Find the line point nearest to (u, v), which must be the detector's radius + 1 px inside the picture.
+    """Find the point of a line nearest to (u, v): where the light's second derivative across it is strongest.
 
     Parameters
     ----------

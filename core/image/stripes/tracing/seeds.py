@@ -35,7 +35,7 @@ _SEGMENT = 32  # numbers whose largest is looked for at once; chosen by speed
 
 
 def seeds(picture: Picture, stripe_px: float, filter_px: float, high: float, noise_grey: float) -> Array:
-    """Find places (K, 2) u, v in pixels where a stripe may be, strongest first.
+    """Find places (K, 2) u, v in px from which stripes may be traced, those of the strongest light first.
 
     Stripes of σ `stripe_px` and at least `high` grey levels are among them; `noise_grey` is the scatter of a pixel.
     """
