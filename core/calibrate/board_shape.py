@@ -110,12 +110,12 @@ class BoardTolerance:
 
     @property
     def size_sd(self) -> float:
-        """Standard uncertainty of the size of the board as a share of it, stated or assumed."""
+        """Relative standard uncertainty of the board's size, stated or assumed."""
         return SUSPECTED_SCALE if self.scale_sd is None else self.scale_sd
 
     @property
     def flatness_sd_mm(self) -> float:
-        """Standard deviation in mm of how far the edges may be off the board's plane, stated or assumed."""
+        """Standard deviation in mm of how far the board's edges are off its plane, stated or assumed."""
         return SUSPECTED_MM if self.flatness_mm is None else self.flatness_mm
 
     @property

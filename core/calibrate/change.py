@@ -343,7 +343,9 @@ def _vector(camera: Camera, fan: Fan) -> Array:
 
 
 def laser_of(fan: Fan) -> Array:
-    """Find the point (3,) where the light planes meet, nearest to the camera; of a single plane its nearest point.
+    """Find the point (3,) in mm, nearest to the camera, where the light planes meet: the laser.
+
+    Of a single plane its nearest point.
 
     Planes at small angles meet along a line that is well known but for noise, which is taken for none.
     """

@@ -46,7 +46,7 @@ class ViewQuality(Excludable):
 
     @property
     def name(self) -> str:
-        """Name of the picture, as `TargetView.name`."""
+        """Name of the view's picture."""
         return self.view.name
 
 
@@ -237,7 +237,7 @@ class FanCalibration:
 
     @property
     def minority(self) -> Message | None:
-        """Warning that fewer than half of the poses that show target and stripes are used; None if not."""
+        """Warning that fewer than half of the poses with target and stripes are used; None if more are."""
         speaking = [
             pose
             for pose in self.poses

@@ -73,7 +73,7 @@ class BoardFit:
         return np.concatenate([np.zeros(camera_parameters), own])
 
     def step(self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp], freedom: int) -> BoardFit:
-        """Do one Gauss–Newton step of the shape, camera and poses moving along.
+        """Improve the board's shape by one Gauss–Newton step, in which camera and poses change too.
 
         Raises
         ------

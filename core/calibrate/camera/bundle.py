@@ -51,7 +51,7 @@ class Observed:
     weights: Array
 
     def select(self, keep: NDArray[np.bool_]) -> Observed:
-        """Select the corners for which `keep` (N,) is true."""
+        """Select the corners of the view for which `keep` (N,) is true."""
         return Observed(self.points[keep], self.uv[keep], self.weights[keep])
 
 

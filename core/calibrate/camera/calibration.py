@@ -289,7 +289,7 @@ def _of_view(view: TargetView, index: int, reason: Message) -> Message:
 def start_of(
     homographies: Sequence[Array], observed: Sequence[Observed], image_size: tuple[int, int], options: CameraOptions
 ) -> Bundle:
-    """Choose the closed-form start with the smallest median residual: Zhang's or one with a centred camera.
+    """Choose a start in closed form for the calibration, with the smallest median residual of several.
 
     `homographies` (3, 3) are those of the views `observed`, in the same order.
     """

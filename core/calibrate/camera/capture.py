@@ -155,7 +155,7 @@ class CaptureJudge:
         self._taken_at = time_s
 
     def forget(self, name: str) -> None:
-        """Forget the view of this name, which was deleted."""
+        """Remove the view called `name`, which the user deleted, from those taken."""
         self._taken = [(view, geometry) for view, geometry in self._taken if view.name != name]
 
     def missing(self) -> tuple[Message, ...]:
@@ -229,7 +229,7 @@ class CaptureJudge:
 
 
 def moved_px(before: TargetView, after: TargetView) -> float:
-    """Compute the median movement in pixels of the points that both views show; infinite if there are none."""
+    """Compute the median movement in px of the points seen in both views; infinite if there are none."""
     first, second = (
         np.round(view.points[:, 0] * 1e3) * 1e7 + np.round(view.points[:, 1] * 1e3) for view in (before, after)
     )

@@ -36,7 +36,7 @@ REGIONS = (
 
 
 def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: int) -> NDArray[np.bool_]:
-    """Find which of (rows, columns) equal cells of the picture hold a point of `uv` (N, 2)."""
+    """Flag which of `rows` × `columns` equal cells of the picture hold a point of `uv` (N, 2): (rows, columns)."""
     width, height = image_size
     column = np.clip((uv[:, 0] + 0.5) * columns // width, 0, columns - 1).astype(np.intp)
     row = np.clip((uv[:, 1] + 0.5) * rows // height, 0, rows - 1).astype(np.intp)
@@ -46,7 +46,7 @@ def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: in
 
 
 def covered_cells(uv: Array, image_size: tuple[int, int]) -> NDArray[np.bool_]:
-    """Find which cells (rows, 8) of the picture, about square, hold a point of `uv` (N, 2)."""
+    """Flag which of the picture's nearly square cells, 8 in a row, hold a point of `uv` (N, 2): (rows, 8)."""
     return picture_cells(uv, image_size, _COLUMNS, max(1, round(_COLUMNS * image_size[1] / image_size[0])))
 
 
@@ -56,7 +56,7 @@ def coverage(uv: Array, image_size: tuple[int, int]) -> float:
 
 
 def empty_regions(uv: Array, image_size: tuple[int, int], names: Sequence[Message] = REGIONS) -> tuple[Message, ...]:
-    """Name those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", … of `names`."""
+    """Name the ninths of the picture without a point of `uv` (N, 2), as "upper left"; () if all have one."""
     cells = picture_cells(uv, image_size, 3, 3)
     return tuple(name for name, seen in zip(names, cells.ravel(), strict=True) if not seen)
 
@@ -75,7 +75,7 @@ def tilt_range(poses: Sequence[Pose]) -> float:
 
 
 def disagreement_mm(first: Camera, second: Camera, uv: Array, depths: tuple[float, float]) -> float:
-    """Compute the RMS distance in mm between where two cameras see the same pixels, over a work volume.
+    """Compute the RMS distance in mm between the points that two cameras see in the same pixels, over a work volume.
 
     The volume is what the pixels inside the hull of `uv` (N, 2) see between the two `depths` in mm. Each camera
     has a frame of its own, so the second is first moved to where the rays of both fit best; what is left is the

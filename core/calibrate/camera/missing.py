@@ -77,7 +77,7 @@ class ViewGeometry:
     pose: Pose
 
     def angle_to(self, other: ViewGeometry) -> float:
-        """Compute the angle in rad between the planes of two views, 0 to π/2."""
+        """Compute the angle in rad, 0 to π/2, between the target's planes in this view and in `other`."""
         sine = np.linalg.norm(np.cross(self.normal, other.normal))
         return float(np.arctan2(sine, abs(self.normal @ other.normal)))
 
@@ -104,7 +104,7 @@ def view_geometry(view: TargetView, camera: Camera) -> ViewGeometry | None:
 def what_is_missing(
     views: Sequence[TargetView], image_size: tuple[int, int], camera: Camera | None = None
 ) -> tuple[Message, ...]:
-    """Advise in at most four sentences what to record next; none when there are enough good views.
+    """Advise in at most four sentences which views to record next; () when there are enough good ones.
 
     `camera` tells the tilts; without it, a usual one does (they come out right within some degrees).
     """

@@ -83,7 +83,7 @@ def view_qualities(
 
 
 def rms_and_mean(errors: Array) -> tuple[float, float]:
-    """Compute root mean square and mean of the lengths of residual vectors (N, 2)."""
+    """Compute RMS and mean of the lengths of residual vectors (N, 2)."""
     lengths = np.linalg.norm(errors, axis=1)
     return float(np.sqrt(np.mean(lengths**2))), float(lengths.mean())
 

@@ -17,7 +17,7 @@ SETTLED = 0.1
 
 
 def has_settled(calibration: CameraCalibration) -> bool | None:
-    """Whether one more Gauss–Newton step would leave all parameters nearly unchanged; None where no views are kept.
+    """Whether the calibration has converged: one more Gauss–Newton step changes little; None if it keeps no views.
 
     A parameter of the value 0 has been held there, whatever its standard deviation.
     """

@@ -35,7 +35,7 @@ def next_view_outline(
     adds: Callable[[ViewGeometry, Array], float | None],
     middle: Array | None = None,
 ) -> Array | None:
-    """Compute the outline of the target at the pose that would add most to the views taken.
+    """Compute the outline (5, 2) in px of the target at the pose that adds most to the views taken; None if none adds.
 
     Parameters
     ----------

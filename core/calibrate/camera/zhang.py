@@ -110,7 +110,7 @@ def centred_matrix(homographies: Sequence[Array], image_size: tuple[int, int]) -
 
 
 def pose_from_homography(matrix: Array, h: Array) -> Pose:
-    """Compute the target's pose before a camera with `matrix` (3, 3) that sees it through homography `h` (3, 3)."""
+    """Compute the pose of a flat target from its homography `h` (3, 3) and the camera's `matrix` (3, 3)."""
     columns: Array = np.asarray(np.linalg.solve(matrix, h), dtype=np.float64)
     columns *= 2 / (np.linalg.norm(columns[:, 0]) + np.linalg.norm(columns[:, 1]))
     if columns[2, 2] < 0:

@@ -98,7 +98,7 @@ class Bundle:
 
     @property
     def covariance(self) -> Array:
-        """Covariance (3N, 3N) of the stacked π in 1/mm², the camera taken as known."""
+        """Covariance (3N, 3N) in 1/mm² of the π of all N light planes, with the camera taken as known."""
         to_pis = self.planes.jacobian
         unknowns = to_pis.shape[1]
         return np.asarray(to_pis @ self.joint[:unknowns, :unknowns] @ to_pis.T)

@@ -62,7 +62,7 @@ class Plate:
 
     @property
     def whiten(self) -> Array:
-        """Matrix (3, 3) that turns bows into independent numbers of unit variance."""
+        """Matrix (3, 3) that turns the plate's bow parameters into independent numbers of unit variance."""
         return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariance)), dtype=np.float64)
 
 
@@ -94,7 +94,7 @@ class ObservationWeights:
 
     @property
     def sd(self) -> Array:
-        """Standard deviations (S, K) in mm of the stripes' offsets, slopes and bends."""
+        """Standard deviations (S, K) in mm of the offsets, slopes and bends of S stripes."""
         return np.asarray(np.hypot(self.noise[:, None], self.extra), dtype=np.float64)
 
 

@@ -145,7 +145,7 @@ def pencil_near(pis: Array, angle: float | None) -> Pencil:
 
 
 def plane_distances(pis: Array, points: Array) -> tuple[Array, Array]:
-    """Compute signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and derivatives by π (N, 3)."""
+    """Compute signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and their derivatives by π."""
     length = np.linalg.norm(pis, axis=1)
     distances = (np.einsum("ni,ni->n", pis, points) - 1) / length
     by_pi = (points - distances[:, None] * pis / length[:, None]) / length[:, None]

@@ -57,7 +57,7 @@ def judge_lines(located: Sequence[LocatedPose], adjusted: Sequence[Pose], pis: A
 
 
 def bends_of(points: Sequence[Array], distances: Sequence[Array], pis: Array) -> Array:
-    """Fit the forms (N, 3, 3) in 1/mm of how the light is off the planes `pis` (N, 3), as in `core.model.Fan`.
+    """Fit how light departs from the planes `pis` (N, 3): quadratic forms Q (N, 3, 3) in 1/mm, XᵀQX mm at X.
 
     `points` (n_k, 3) in mm are those on each line of all poses, `distances` (n_k,) what they are off its plane. Of
     these a parabola along the lines takes what it can: the same for all, for their light goes through one lens and

@@ -117,7 +117,7 @@ class Stripes:
         return Distances(mm + by_bow @ bow, with_bend(flat.by_planes), with_bend(flat.by_pose), by_bow, by_camera)
 
     def noise_mm(self, planes: PlaneSet, poses: Sequence[Pose]) -> Array:
-        """Compute each stripe's own noise (S,) across its line of rays, as a distance in mm from the light plane."""
+        """Compute the noise (S,) of each stripe's place, as its distance in mm from the light plane."""
         target = np.array([target_plane_changes(pose)[0] for pose in poses])[self.pose_of]
         pis = planes.pis[self.line_of]
         middle = self._pivots.mean(axis=1)

@@ -98,7 +98,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
 
 
 def fan_of(planes: PlaneSet, covariance: Array | None = None) -> Fan:
-    """Make a fan of N planes, with the `covariance` (3N, 3N) of their π."""
+    """Make a fan of the N planes of a set, with the `covariance` (3N, 3N) of their π, if given."""
     return Fan(tuple(LightPlane(pi) for pi in planes.pis), covariance)
 
 

@@ -45,7 +45,7 @@ class LocatedPose(Excludable):
 
     @property
     def used(self) -> bool:
-        """Whether the pose takes part in the fit."""
+        """Whether the pose takes part in the fit of the light planes: it has no exclusion."""
         return self.exclusion is None
 
     @property

@@ -55,7 +55,7 @@ class PoseFeatures(Excludable):
 
     @property
     def used(self) -> bool:
-        """Whether the pose can be used."""
+        """Whether the pose's pictures can be used: nothing excludes them."""
         return self.exclusion is None
 
     @property
