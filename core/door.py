@@ -59,7 +59,7 @@ def by_entry_points(group: str) -> Iterator[Brought]:
 
 
 def by_folders(package: str, constant: str) -> Iterator[Brought]:
-    """Load a constant of the module `wing` in each folder of a package of ours, but for those that are left out.
+    """Load the `constant` of the module `wing` in each folder of `package`, but for wings left out, and yield each.
 
     Nothing where the package itself is gone.
     """

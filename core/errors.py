@@ -102,7 +102,7 @@ def _sentence(where: Message, what: Message, todo: Message) -> Message:
 
 
 def words_of(error: Exception) -> Message | str:
-    """Return the text of an error, as a value of a message: its own message, or the words of another program."""
+    """Return the text of an error to be put into a message: an InputError's reason, or another error's own words."""
     return error.what if isinstance(error, (InputError, WrongValue)) else str(error)
 
 

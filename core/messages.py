@@ -112,7 +112,7 @@ class Message:
         return self.text.endswith(".")
 
     def with_values(self, change: Callable[[Any], Any]) -> Message:
-        """Replace each value by what `change` returns for it."""
+        """Copy the message with each value replaced by what `change` returns for it."""
         return _restored(self.code, self.text, self.many, {name: change(one) for name, one in self.values.items()})
 
     def _parts(self) -> tuple[Any, ...]:
@@ -125,10 +125,7 @@ def plural_message(code: str, one: str, many: str, /, *, n: int, **values: Any) 
 
 
 def plain(text: str) -> Message:
-    """Make a message of a text that is none of this program's.
-
-    Typed by a user, of another program, of an older file.
-    """
+    """Make a message of a text that is not this program's own: typed by a user, or read from elsewhere."""
     return Message("", text.replace("{", "{{").replace("}", "}}"))
 
 
@@ -219,7 +216,7 @@ class Language:
         return _Formatter(self).vformat(text, (), values) if values else text
 
     def number(self, value: float, spec: str = "") -> str:
-        """Format a number by a format of Python's.
+        """Format a number by Python's format `spec`, with this language's decimal sign.
 
         Its decimal sign here, a true minus sign, no-break spaces for ','.
         """
@@ -278,7 +275,7 @@ def unparted(text: str) -> str:
 
 
 def decimals_of(uncertainty: float) -> int:
-    """Compute the decimals that show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not positive."""
+    """Compute how many decimals show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not positive."""
     if not math.isfinite(uncertainty) or uncertainty <= 0:
         return 3
     exponent = int(f"{uncertainty:.1e}".partition("e")[2])  # after rounding: 0.0996 is shown as 0.10
@@ -323,7 +320,7 @@ ENGLISH = Language()
 
 
 def as_json(message: Message) -> dict[str, Any]:
-    """Convert a message for files: code, English text and values; `from_json` reads it."""
+    """Convert a message to a table for JSON files that `from_json` reads: code, English text and values."""
     return {
         "code": message.code,
         "text": str(message),
@@ -332,7 +329,7 @@ def as_json(message: Message) -> dict[str, Any]:
 
 
 def from_json(kept: Mapping[str, Any] | str) -> Message:
-    """Read a message from a file; a bare text of an older file is taken as it is.
+    """Read a message from the table of `as_json`, or from a bare text of an older file.
 
     Raises
     ------
@@ -352,7 +349,7 @@ def as_text(message: Message | None) -> str:
 
 
 def from_text(kept: str) -> Message | None:
-    """Read a message that a file has as a text; a sentence of an older file is taken as it is; None for ''.
+    """Read a message from the text of `as_text`, or a bare sentence of an older file; None for ''.
 
     Raises
     ------

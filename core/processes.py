@@ -37,7 +37,7 @@ def program_command(name: str, module: str) -> tuple[str, ...]:
 
 
 def run_asked_module() -> bool:
-    """Run the module that the arguments of a frozen program name; False if they name none."""
+    """Run the module that the command line of a frozen program names; returns whether it named one."""
     if sys.argv[1:2] != [MODULE] or len(sys.argv) < 3:
         return False
     sys.argv = sys.argv[2:]

@@ -42,7 +42,7 @@ class StepProgress:
 
 
 def steps(items: Iterable[T], progress: Progress, step: str, total: int) -> Iterator[T]:
-    """Pass `items` on, reporting each one to `progress` as it is asked for and the end when all are done."""
+    """Yield `items`, reporting each to `progress` when it is asked for, and the end after the last."""
     for done, item in enumerate(items):
         progress(step, done, total)
         yield item

@@ -25,7 +25,7 @@ first. `changed_since` says what it no longer is of."""
 
 
 def changed_since(names: Sequence[str]) -> Message:
-    """Make the reason why a result is out of date: the names of its inputs that have changed.
+    """Make the reason why a result is out of date: the `names` of its inputs that have changed.
 
     Examples
     --------

@@ -52,7 +52,7 @@ def preferred(wanted: Iterable[str]) -> str:
 
 
 def own_name(name: str) -> str:
-    """Return the name of a language in itself: 'Deutsch'; of the pseudo-language its code."""
+    """Return the name of a language in that language, as 'Deutsch'; the code of the pseudo-language."""
     from babel import Locale
 
     return name if name == PSEUDO else str(Locale.parse(name).get_language_name() or name)

@@ -75,7 +75,7 @@ class Named(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of the wing."""
+        """Name by which a wing, a part of the program, is found and left out."""
         ...
 
 
@@ -104,7 +104,7 @@ def wings() -> Found[Wing]:
 
 
 def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
-    """Select the wings among loaded objects, without those left out; of one name the first counts."""
+    """Sort loaded objects into wings of this `kind`, unusable ones and wings left out; of one name the first counts."""
     found, unusable, away = dict[str, tuple[AWing, Origin | None]](), list[Brought](), list[AWing]()
     for one in brought:
         wing = one.what

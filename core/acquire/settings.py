@@ -131,7 +131,7 @@ class SourceSettings:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """Settings that are not None, by name."""
+        """Those settings, by name, that are not None."""
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
         return {name: value for name, value in pairs if value is not None}
 
@@ -175,7 +175,7 @@ class Capabilities:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the SourceSettings that can be changed."""
+        """Names of the settings in SourceSettings that the source can change."""
         there = {
             "exposure_ms": self.exposure_ms is not None,
             "gain_db": self.gain_db is not None,

@@ -115,7 +115,7 @@ class FrameSource(Protocol):
 
     @property
     def capabilities(self) -> Capabilities:
-        """Settings that the source has; exact limits only while it is open."""
+        """Settings that the source has, with their limits; exact only while it is open."""
 
     def open(self) -> None:
         """Open the source for reading, also again after `close` or `Unplugged`; InputError if that fails."""

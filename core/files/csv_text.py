@@ -37,7 +37,7 @@ def _is_number(text: str) -> bool:
 
 
 def harmless(cell: Any) -> Any:
-    """Put an apostrophe before a cell that a spreadsheet would take for a formula; numbers stay numbers.
+    """Put an apostrophe before a text that a spreadsheet would take for a formula; numbers are returned as they are.
 
     Control characters are written out.
 

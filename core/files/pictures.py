@@ -190,7 +190,7 @@ def compression_of(path: Path, channel: Channel | None = None) -> Compression:
 
 
 def write_picture(path: Path, picture: Picture) -> None:
-    """Write (height, width) uint8 or uint16 grey levels, lossless, quickly, whole or not at all.
+    """Write grey levels (height, width), uint8 or uint16, as PNG or PGM by the ending of `path`, whole or not at all.
 
     PNG takes half the room, PGM no coding: it is as quick as the disk.
 

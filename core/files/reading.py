@@ -35,7 +35,7 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
 
 
 def resolved(path: Path) -> Path:
-    """Resolve a path, links followed as far as they lead; unlike for Path.resolve, a circle of them is no error."""
+    """Make a path absolute, links followed as far as they lead; a circle of links is no error."""
     return Path(os.path.realpath(path))
 
 
@@ -45,7 +45,7 @@ def file_hash(path: Path) -> str:
 
 
 def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = None, most: int = TEXT_BYTES) -> str:
-    """Read the text of a UTF-8 file, without the mark some programs begin it with.
+    """Read the text of a UTF-8 file, without a byte order mark; InputError if it cannot be read.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def refused_path(error: Exception) -> InputError | None:
 
 
 def cannot_read(path: Path, error: OSError | ValueError) -> InputError:
-    """Make the error for a file or folder that is there and cannot be read."""
+    """Make the error that a file or folder is there but cannot be read, with the system's reason."""
     reason = str(getattr(error, "strerror", "") or error)
     return InputError(Message("file.cannot_be_read", "cannot be read ({reason})", reason=reason), where=path)
 

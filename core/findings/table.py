@@ -49,7 +49,7 @@ def all_findings() -> Mapping[str, Finding]:
 
 
 def note_of(code: str, /, **values: Any) -> Message:
-    """Make the note on the finding with this code; `values` fill the places of its text.
+    """Make the note on the finding with this `code`, with `values` in the places of its text.
 
     Raises
     ------

@@ -79,7 +79,7 @@ class Fan:
 
     @property
     def distance_sds(self) -> tuple[float, ...]:
-        """Standard deviation in mm of each plane's distance from the camera, by the covariance."""
+        """Standard deviation in mm of each plane's distance from the camera's centre, by the fan's covariance."""
         assert self.covariance is not None
         sds = []
         for k, pi in enumerate(self.pis):  # d = 1/‖π‖
@@ -90,7 +90,7 @@ class Fan:
 
 
 def bent_pis(pis: Array, bends: Array, rays: Array) -> Array:
-    """Compute π (M, 3) of planes that meet `rays` (M, 3) where light that is XᵀQX mm off `pis` (M, 3) at X meets them.
+    """Compute planes π (M, 3) that `rays` (M, 3) meet where they meet the light bent by XᵀQX mm off planes `pis`.
 
     `bends` (M, 3, 3) are the Q. On X = z r the light has π·r − 1/z = ‖π‖ z rᵀQr; with z of the plane, to first order.
     """

@@ -34,7 +34,7 @@ class LightPlane:
 
     @property
     def normal(self) -> Array:
-        """Unit normal (3,), pointing away from the camera's centre."""
+        """Unit normal (3,) of the plane, pointing away from the camera's centre."""
         unit: Array = self.pi / np.linalg.norm(self.pi)
         return unit
 

@@ -29,7 +29,7 @@ MAD_TO_SD = 1.4826
 
 
 def huber_weights(residuals: Array, limit: float = HUBER) -> Array:
-    """Compute Huber's weights, 1 up to `limit` and limit / |residual| beyond; no residual pulls harder than that.
+    """Compute Huber's weights of residuals of any shape: 1 up to `limit`, limit / |residual| beyond.
 
     Parameters
     ----------

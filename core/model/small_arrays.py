@@ -71,7 +71,7 @@ def indices_of(count: int, value: int) -> Index:
 
 @inlined()
 def new_flags(count: int) -> NDArray[np.bool_]:
-    """Make an array (count,) of False."""
+    """Make a boolean array (count,) of False."""
     return np.zeros(count, np.bool_)
 
 

@@ -284,17 +284,17 @@ class Options:
 
     @property
     def for_planes(self) -> Options:
-        """Settings of the calibration of the laser planes."""
+        """Settings of the calibration of the laser planes; all others have their defaults."""
         return self._only("planes")
 
     @property
     def for_scan(self) -> Options:
-        """Settings of a scan or a profile, with those of reading the pictures of the check."""
+        """Settings of a scan or a profile and of reading the check's pictures; all others have their defaults."""
         return self._only("scan", "check")
 
     @property
     def for_plan(self) -> Options:
-        """Settings of a scan that is only planned."""
+        """Settings of a scan that is only planned; all others have their defaults."""
         return self._only("plan")
 
     def solving(self, row_time_us: float | None = None) -> ReconstructOptions:

@@ -44,7 +44,7 @@ PLATES: dict[str, Target] = {
 
 
 def rig_toml(scenario: Scenario) -> str:
-    """Write the text of rig.toml for a scenario."""
+    """Make the text of the rig.toml that describes a scenario's rig."""
     gauge = (
         GaugeSpec(float(scenario.height_mm), GAUGE_TOLERANCE_MM)
         if scenario.object in ("block", "narrow-block")

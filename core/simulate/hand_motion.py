@@ -53,7 +53,7 @@ class HandMotion:
         return (self.speed_mm_s > 0 or self.tremor_mm > 0) and (self.readout_s > 0 or self.exposure_s > 0)
 
     def sheets(self, sheet: Sheet, rows: int, heading: float, rng: np.random.Generator) -> tuple[Sheet, ...]:
-        """Compute the sheets of light in a picture of so many `rows`, the hand on its way right (+1) or left (−1).
+        """Compute the laser sheets in a picture of `rows` rows while the hand moves right (+1) or left (−1).
 
         Returns
         -------

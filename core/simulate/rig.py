@@ -66,11 +66,11 @@ class Optics:
     black_level_grey: float = 5.0
 
     def blur_px(self, scale: float) -> float:
-        """Compute the Gaussian σ of lens and pixel in px of a picture at `scale`, without the pixel's own area."""
+        """Compute the Gaussian σ in px of lens and pixel in a picture scaled by `scale`, but for a pixel's area."""
         return float(np.hypot(self.lens_blur_px * scale, self.pixel_blur_px))
 
     def grain_px(self, scale: float) -> float:
-        """Compute the speckle grain in px of a picture at `scale`; no grain is finer than its pixel."""
+        """Compute the size in px of speckle grains in a picture scaled by `scale`; at least a pixel's."""
         return float(np.hypot(self.speckle_grain_px * scale, 1.0))
 
 
@@ -133,12 +133,12 @@ class Rig:
 
     @property
     def blur_px(self) -> float:
-        """Gaussian σ of lens and pixel in pixels of this rig's pictures."""
+        """Gaussian σ in px of the blur by lens and pixel in this rig's pictures."""
         return self.optics.blur_px(self.scale)
 
     @property
     def grain_px(self) -> float:
-        """Speckle grain in pixels of this rig's pictures."""
+        """Size in px of speckle grains in this rig's pictures."""
         return self.optics.grain_px(self.scale)
 
 

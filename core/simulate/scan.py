@@ -105,7 +105,7 @@ class ScanStage:
         self._still = self._room_light + self._fan_light
 
     def reference(self) -> Picture:
-        """Render the picture with the hand-held laser off: room light and fan."""
+        """Render the reference picture: room light and fan, the hand-held laser off."""
         return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:

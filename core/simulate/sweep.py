@@ -74,7 +74,7 @@ class HandCourse:
     aims: Array
 
     def sheets(self, rig: Rig) -> list[Sheet]:
-        """Compute the sheet of light at each instant, in the camera frame."""
+        """Compute the laser sheet at each instant of the hand's course, in the camera frame."""
         emitters = np.column_stack(
             [
                 self.side * self.baseline * np.cos(self.tilt) + 5 * self.sway,

@@ -41,7 +41,7 @@ def is_missing() -> bool:
 
 
 def aravis() -> Any:
-    """Import Aravis's module; InputError if it is missing.
+    """Import and return the module Aravis; InputError if it is missing.
 
     Raises
     ------

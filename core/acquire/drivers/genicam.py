@@ -79,7 +79,7 @@ class Driver(Protocol):
         """Whether the camera is disconnected; asked when no frame comes."""
 
     def close(self) -> None:
-        """Release the camera, also when it is disconnected."""
+        """Release the camera, whether it is still connected or not."""
 
 
 class FrameNumbers:

@@ -138,7 +138,7 @@ def sensor_size(features: Features) -> tuple[int, int] | None:
 
 
 def row_time_us(features: Features) -> float | None:
-    """Read the time from one row to the next in µs, 0 of a global shutter; None where the camera does not state it.
+    """Read the time in µs from one row's exposure to the next; 0 of a global shutter; None if it is not stated.
 
     The standard has `SensorShutterMode`, but no time of a row: of a rolling shutter that is the time of the whole
     read-out, in µs, over its rows, where the camera has `SensorReadoutTime`. Rows that begin together and end one after
@@ -153,7 +153,7 @@ def row_time_us(features: Features) -> float | None:
 
 
 def is_software_triggered(features: Features) -> bool:
-    """Whether each picture must be requested by the command TriggerSoftware."""
+    """Whether the camera takes each picture only when the command TriggerSoftware requests it."""
     if not (features.has("TriggerMode") and features.has("TriggerSource")):
         return False
     return features.entry("TriggerMode") == "On" and features.entry("TriggerSource") == SOFTWARE

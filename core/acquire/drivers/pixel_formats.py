@@ -87,7 +87,7 @@ def decode(data: NDArray[Any], name: str, width: int, height: int, channel: Chan
 
 
 def full_range(grey: NDArray[Any], bits: int) -> Picture:
-    """Spread grey levels over 16 bit, white to white; those of 8 or 16 bit stay as they are."""
+    """Scale grey levels of `bits` bits to 16 bits, white to white; those of 8 or 16 bits stay as they are."""
     if bits in (8, 16):
         return grey
     wide = grey.astype(np.uint16)

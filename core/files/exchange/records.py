@@ -166,7 +166,7 @@ def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
 
 
 def finite(value: float) -> float | None:
-    """Return the number if it is finite, else None."""
+    """Return `value` if it is a finite number, else None."""
     return float(value) if math.isfinite(value) else None
 
 
@@ -176,7 +176,7 @@ def plain(value: Any) -> Any:
 
 
 def one_line(text: str) -> str:
-    """Remove line ends and control characters from a text, for formats that have one line a field."""
+    """Remove line ends and control characters from a text, for file formats with a line for each field."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 

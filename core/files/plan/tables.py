@@ -79,7 +79,7 @@ class LimitsTable(Table):
 
     @property
     def in_degrees(self) -> bool:
-        """Whether the limits are of an angle."""
+        """Whether these limits are of an angle, in degrees, and not of a length."""
         return any(getattr(self, key) is not None for key in type(self).model_fields if key.endswith("_deg"))
 
     @model_validator(mode="after")

@@ -196,7 +196,7 @@ def read_stored_planes(project_folder: Path, id_: str, camera: Camera) -> FanCal
 
 
 def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...]:
-    """Read the features of the poses of a stored calibration of light planes; InputError if missing or damaged."""
+    """Read what the poses' pictures of a stored calibration of light planes show; InputError if missing or damaged."""
     return read_poses(_found(project_folder, "planes", id_).with_suffix(".npz"), id_)
 
 

@@ -156,7 +156,7 @@ def require_free(to: Path) -> None:
 
 
 def free_folder(base: Path, name: str, fits: Callable[[Path], bool] = lambda path: not path.exists()) -> Path:
-    """Find the first of NAME, NAME 2, NAME 3, … in `base` that fits, by default: that does not exist."""
+    """Find the first of NAME, NAME 2, NAME 3, … in `base` for which `fits` is true; by default, that does not exist."""
     return next(path for n in count(1) if fits(path := base / (name if n == 1 else f"{name} {n}")))
 
 
@@ -182,7 +182,7 @@ def write_autosave(folder: Path, file: ProjectFile) -> None:
 
 
 def remove_autosave(folder: Path) -> None:
-    """Remove the autosaved state, if there is one; InputError if it cannot be removed."""
+    """Remove the autosaved state from a project's folder, if there is one; InputError if it cannot be removed."""
     remove(folder / AUTOSAVE)
 
 

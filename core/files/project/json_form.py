@@ -132,7 +132,7 @@ class NewerProject(InputError):
 
 
 def project_text(file: ProjectFile, path: Path) -> str:
-    """Write the text of project.json for `file`.
+    """Make the text of the file project.json of a project, checked.
 
     Raises
     ------

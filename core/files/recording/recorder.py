@@ -73,7 +73,7 @@ class Recorder:
 
     @property
     def dropped(self) -> int:
-        """Number of pictures lost because the disk is too slow, or given up by `close` because it is full."""
+        """Number of pictures lost: the disk is too slow, or `close` has given them up."""
         with self._changed:
             return self._dropped
 

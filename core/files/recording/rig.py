@@ -758,7 +758,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
 
 
 def rig_to_toml(rig: Rig) -> str:
-    """Write a rig as text of rig.toml that :func:`read_rig` reads as the same rig."""
+    """Make the text of rig.toml from which :func:`read_rig` reads the same rig."""
     return toml_text(rig_tables(rig))
 
 

@@ -69,7 +69,7 @@ class _Register(Table):
 
 
 def read_register(beside: Path) -> Mapping[str, Artefact]:
-    """Read the known artefacts by their ids: the user's own, and those in the folder `beside` rig.toml.
+    """Read all known artefacts, by their ids: the user's own, and those in the folder `beside` rig.toml.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class PictureStep:
 
     @property
     def used(self) -> bool:
-        """Whether the picture gave a thickness."""
+        """Whether the picture gave a thickness: it has no reason against it."""
         return self.reason is None
 
     @classmethod

@@ -70,7 +70,7 @@ class LensEffects:
         return Camera(camera.image_size, camera.matrix, np.array([k1, k2, p1, p2, k3 + self.k3]))
 
     def image(self, light: Map, blur_px: float, camera: Camera, depth: Map, scale: float) -> Map:
-        """Image light (h, w) of points at `depth` (h, w) in mm through the lens; σ is `blur_px` in focus."""
+        """Blur the light (h, w) of points at `depth` (h, w) in mm as the lens does: σ `blur_px` px in focus."""
         shown = self._focused(light, blur_px, float(camera.matrix[0, 0]), depth)
         return self._with_tails(shown, camera, self.coma_px * scale) if self.coma_px else shown
 

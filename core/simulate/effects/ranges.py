@@ -9,7 +9,7 @@ from core.messages import Message
 
 
 def require_ranges(described: object, ranges: Iterable[tuple[str, float, float]]) -> None:
-    """Raise InputError if a field of `described` is not within its range (name, lowest, highest)."""
+    """Raise InputError if a field of `described` is outside its range, given as (name, lowest, highest)."""
     for name, low, high in ranges:
         if not low <= getattr(described, name) <= high:
             raise InputError(

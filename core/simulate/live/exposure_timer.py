@@ -60,7 +60,7 @@ class ExposureTimer:
         return self._base_s + (number - self._base_number) / self._rate
 
     def wait_s(self) -> float:
-        """Compute the time in s to the next exposure; 0 or less if it is due."""
+        """Compute the time in s until the next exposure is due; 0 or less if it is due."""
         if self._paced:
             return self.time_of(self._last + 1) - self.now()
         return 0.0 if self._hurried else self._exposed_at + 1 / self._rate - self._clock()
@@ -70,7 +70,7 @@ class ExposureTimer:
         return 0.0 if self._paced or self._hurried or self._forgiven else max(0.0, -self.wait_s())
 
     def expose(self) -> tuple[int, int]:
-        """Count the exposure that is due; returns its number, and how many were missed since the last one."""
+        """Count the exposure that is due; returns its number, and the number of exposures missed before it."""
         number = self._last + 1
         if self._paced:
             due = self._base_number + floor((self.now() - self._base_s) * self._rate)

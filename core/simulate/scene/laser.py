@@ -91,7 +91,7 @@ def laser_light(
     out: Map | None = None,
     reached: Callable[[Array], NDArray[np.bool_]] | None = None,
 ) -> Map:
-    """Render the light of one sheet that each pixel's surface point sends back, (height, width) in 8-bit grey levels.
+    """Compute the light (height, width), in 8-bit grey levels, of one laser sheet that each pixel's point reflects.
 
     Added to `out` when it is given. Neither lens nor speckle are in it yet. `reached` says which points (N, 3) light
     gets to; without it, those that nothing shades.
