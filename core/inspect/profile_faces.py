@@ -18,7 +18,7 @@ from core.inspect.faces import FacePair
 from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
 
-# Held by tests/inspect/test_profile_faces.py on exact profiles and by tests/accuracy/test_profile.py on rendered ones.
+# Held by tests/inspect/test_step_height.py on exact profiles and by tests/accuracy/test_profile.py on rendered ones.
 GAP_PX = 3.0
 """Points of one line farther apart than this lie on two stretches: points are a pixel apart."""
 SHORTEST_MM = 4.0
