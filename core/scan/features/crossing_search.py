@@ -9,7 +9,7 @@ two.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -26,6 +26,7 @@ from core.model.arrays import Array
 from core.model.small_arrays import doubled_index_table, indices_of, new_index_table, new_indices
 from core.progress import Progress, silent
 from core.scan.features.crossings import CrossingTable, CrossingWindow, Index
+from core.stage_times import stage
 from core.threads import ordered_map
 
 _AT_ONCE = 500
@@ -55,13 +56,16 @@ def all_crossings(
     window: CrossingWindow,
     progress: Progress = silent,
 ) -> CrossingTable:
-    """Find every crossing of each sweep's centrelines with those of the fan and of each later sweep."""
+    """Find every crossing of each sweep with the fan and with each later sweep.
+
+    A StageTimes learns what that costs on all threads.
+    """
     pictures = (fan, *sweeps)
     progress("crossings", 0, len(sweeps))
     lines = Stack([piece for pieces in pictures for piece in pieces], window.half_length_px)
     picture = np.repeat(np.arange(len(pictures)), [len(pieces) for pieces in pictures])
     met = meetings_of(lines, picture)
-    fitted = _Fits.of(lines, met, window.min_angle, lambda a: progress("crossings", a, len(sweeps)))
+    fitted = _Fits.of(lines, met, window.min_angle, len(sweeps), progress)
     progress("crossings", len(sweeps), len(sweeps))
     return _table(lines, picture, met, fitted, window)
 
@@ -152,8 +156,8 @@ class _Fits:
     share: Array
 
     @classmethod
-    def of(cls, lines: Stack, met: Meetings, min_angle: float, reached: Callable[[int], None]) -> _Fits:
-        """Fit both centrelines at every meeting; `reached` is told every sweep it comes to."""
+    def of(cls, lines: Stack, met: Meetings, min_angle: float, sweeps: int, progress: Progress) -> _Fits:
+        """Fit both centrelines at every meeting; `progress` is told which of so many `sweeps` it has come to."""
         count = len(met.piece)
         fits = cls(
             np.empty((count, MEETING)),
@@ -166,11 +170,12 @@ class _Fits:
         def fit(start: int) -> int:
             part = slice(start, start + _AT_ONCE)
             into = _Into(fits.rows[part], fits.along[part], fits.cell[part], fits.share[part])
-            _fit(met.piece[part], met.point[part], pieces, lines.cell_px, min_angle, into)
+            with stage(progress, "crossings"):
+                _fit(met.piece[part], met.point[part], pieces, lines.cell_px, min_angle, into)
             return start
 
         for start in ordered_map(fit, range(0, count, _AT_ONCE)):
-            reached(int(met.picture[start, 0]) - 1)
+            progress("crossings", int(met.picture[start, 0]) - 1, sweeps)
         return fits
 
 

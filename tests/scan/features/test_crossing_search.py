@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from time import thread_time
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ import pytest
 from core.errors import Cancelled
 from core.image.crossings.segments import Stack
 from core.image.stripes.centreline import Centreline
+from core.scan.features import crossing_search
 from core.scan.features.crossing_search import all_crossings, meetings_of
 from core.scan.features.crossings import CrossingTable, CrossingWindow, crossing_table, meetings, shaded
+from core.stage_times import StageTimes
 
 WINDOW = CrossingWindow(half_length_px=20.0)
 
@@ -112,3 +115,20 @@ def test_a_search_can_be_cancelled_and_tells_how_far_it_is():
 
     with pytest.raises(Cancelled):
         all_crossings(fan, sweeps, WINDOW, stop)
+
+
+def test_the_time_of_the_fits_on_all_threads_is_that_of_the_crossings(monkeypatch):
+    spent_s = []
+
+    def fit(*_):
+        began = thread_time()
+        while thread_time() < began + 0.03:
+            pass
+        spent_s.append(thread_time() - began)
+
+    monkeypatch.setattr(crossing_search, "_AT_ONCE", 1)
+    monkeypatch.setattr(crossing_search, "_fit", fit)
+    monkeypatch.setattr(crossing_search, "_table", lambda *_: None)
+    rng, times = np.random.default_rng(2), StageTimes()
+    all_crossings([curve(rng)], [[curve(rng)] for _ in range(4)], WINDOW, times)
+    assert len(spent_s) > 2 and times.seconds()["crossings"] >= sum(spent_s)
