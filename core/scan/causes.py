@@ -49,7 +49,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import Schedule
 from core.scan.between_frames import Between, between
-from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts, light_at_rest
+from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts, possible_movements
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import BY_CHANCE, Cause, Causes, Suspect
@@ -152,7 +152,7 @@ def compare_causes(
         return ()
     seen, shifts, noise_px = fan_shifts(features)
     noise_px = np.maximum(noise_px, LEAST_NOISE_PX)
-    movements = [one for one in scan.movements if not light_at_rest(seen, shifts, noise_px, one.first_after)]
+    movements = possible_movements(scan.movements, seen, shifts, noise_px)
     candidates = [
         *_moved(equations, solution, movements, frames, seen),
         _drifted(equations, solution, frames, len(features.frames), seen),

@@ -51,6 +51,9 @@ _PLACES = 60
 NEARLY_ALL = 0.8
 """Share of the stretches that moved from which on it was not the part alone: table, camera or fan."""
 
+MOVED_SHARE = 0.2
+"""Share of the stretches that must have moved by MOVED_PX for it to matter, where single ones are too noisy to tell."""
+
 PART_WORDS = Message("scan.the_part", "the part")
 EVERYTHING_WORDS = Message("scan.everything", "the camera, the fan, or the table with the part")
 
@@ -177,16 +180,33 @@ def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
     return known, shifts, np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
 
 
-def light_at_rest(seen: Index, shifts: Array, noise_px: Array, first_after: int) -> bool:
-    """Whether the fan's light surely lies, from the frame `first_after` on, where it lay before; False if not known.
+def possible_movements(
+    movements: Sequence[Between], seen: Index, shifts: Array, noise_px: Array
+) -> tuple[Between, ...]:
+    """Select those of the `movements`, in order, that the fan's light does not surely deny.
 
-    `seen` (K,), `shifts` (K, C) and `noise_px` (C,) are as of `fan_shifts`.
+    It denies none that it shows itself, and none of which it tells too little. `seen` (K,), `shifts` (K, C) and
+    `noise_px` (C,) are as of `fan_shifts`, no noise below LEAST_NOISE_PX.
     """
-    before, after = shifts[seen < first_after], shifts[seen >= first_after]
-    fewer = min(len(before), len(after))
-    if fewer < LEAST_FRAMES or shifts.shape[1] < LEAST_STRETCHES:
+    shown = _splits(shifts, noise_px, 0)
+    places = np.searchsorted(seen, [one.first_after for one in movements]).tolist()
+    around = zip([0, *places], places, [*places[1:], len(seen)], strict=False)
+    return tuple(
+        one
+        for one, (start, at, end) in zip(movements, around, strict=True)
+        if at in shown or not _surely_at_rest(shifts[start:at], shifts[at:end], noise_px)
+    )
+
+
+def _surely_at_rest(before: Array, after: Array, noise: Array) -> bool:
+    """Whether no stretch (K, C) has surely moved, and all of them together surely less than what matters."""
+    if min(len(before), len(after)) < LEAST_FRAMES or len(noise) < LEAST_STRETCHES:
         return False
-    return not _moved(np.median(before, axis=0), np.median(after, axis=0), noise_px, fewer)
+    change = np.median(after, axis=0) - np.median(before, axis=0)
+    variance = np.pi / 2 * (1 / len(before) + 1 / len(after)) * noise**2
+    beyond = max(0.0, float(np.sum(change**2 - variance))) + SURELY * np.sqrt(2 * np.sum(variance**2))
+    any_moved = np.any(np.abs(change) > np.maximum(SURELY * np.sqrt(variance), MOVED_PX))
+    return bool(not any_moved and beyond <= MOVED_SHARE * len(noise) * MOVED_PX**2)
 
 
 def _splits(shifts: Array, noise: Array, first: int) -> list[int]:

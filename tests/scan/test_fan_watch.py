@@ -9,6 +9,8 @@ import pytest
 from core.errors import InputError
 from core.messages import plain
 from core.scan import reconstruct as reconstruct_module
+from core.scan.between_frames import Between
+from core.scan.fan_watch import possible_movements
 from core.scan.features.extraction import FeatureOptions, extract_features
 from core.scan.method import Method, ReconstructOptions
 from core.scan.reconstruct import reconstruct
@@ -20,6 +22,7 @@ from core.simulate.scenario import Scenario
 AT = 16
 SEEDS = pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3))])
 BLOCK = Scenario(object="block", scale=0.25, frames=30, seed=1, moved_frame=AT)
+FRAME, STRETCH = np.arange(40)[:, None], np.arange(12)
 
 
 @cache
@@ -139,3 +142,34 @@ def test_a_rig_that_warms_too_much_is_refused_for_its_drift_or_told_to_drift(see
     except InputError as refused:
         assert refused.code == "scan.drifted_too_much"
         assert "warm up" in str(refused.todo)
+
+
+def possible_at(at, shifts_px, noise_px):
+    """First frames after those of the movements that light which lies aside so, with noise, does not deny."""
+    shifts = np.random.default_rng(1).normal(shifts_px, noise_px)
+    movements = [Between(frame - 1, frame) for frame in at]
+    left = possible_movements(movements, FRAME[:, 0], shifts, np.full(shifts.shape[1], noise_px))
+    return tuple(one.first_after for one in left)
+
+
+@pytest.mark.parametrize(
+    ("shift_px", "noise_px", "at", "possible"),
+    [
+        pytest.param(0.0, 0.005, (20,), (), id="at rest"),
+        pytest.param(0.3 * ((FRAME >= 15) & (FRAME < 20)), 0.005, (15, 20), (15, 20), id="away for a while"),
+        pytest.param(0.3 * (FRAME >= 15), 0.005, (15, 25), (15,), id="crossings find another one"),
+        pytest.param(0.2 * (FRAME >= 36), 0.1, (36,), (36,), id="noisy, few frames after it"),
+        pytest.param(0.05 * (FRAME >= 20), 0.05, (20,), (20,), id="noisy, and little"),
+        pytest.param(0.0, 0.05, (20,), (20,), id="noisy, and unknown"),
+        pytest.param(0.3 * ((FRAME >= 20) & (STRETCH < 2)), 0.005, (20,), (20,), id="two stretches"),
+        pytest.param(0.015 * (FRAME >= 20), 0.01, (20,), (20,), id="in all stretches together"),
+    ],
+)
+def test_the_fans_light_denies_only_movements_that_it_would_surely_show(shift_px, noise_px, at, possible):
+    assert possible_at(at, shift_px + np.zeros((40, 12)), noise_px) == possible
+
+
+def test_the_fans_light_denies_no_movement_that_it_shows_itself_though_others_are_near():
+    """Between those that crossings find there are frames too few to show it again."""
+    three = 0.026 * ((FRAME >= 20) & (np.arange(100) < 3))
+    assert possible_at((16, 20, 24), three, 0.007) == (20,)
