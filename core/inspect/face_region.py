@@ -20,6 +20,10 @@ GAP_SHARE = 6.0
 """Half that gap over the median distance to the nearest point, which is a quarter of an even spacing of stripes."""
 SMALL_PART = 0.05
 """Parts of a face smaller than this share of its largest one are clutter that happens to lie in its plane."""
+STRAY_SHARE = 0.01
+"""Points of sweeps on a face, over those of the fan, up to which no sweep reaches it: they are wrong ones. A sweep that
+crosses a line of the fan leaves 1 mm of itself even on a plane that slants by 30° through that line, so that sweeps
+that cross the lines of the fan every 100 mm have a larger share."""
 MOST_CELLS = 4000
 """Along a side: on faces beyond 2 m the cells grow instead, so that a map needs 16 MB at most."""
 
@@ -62,13 +66,13 @@ def region_on(
 
     A face that no sweep reaches is known by the fan's lines alone, and these lie as far apart as the rig has them: what
     is between two of them is no edge. Where several lines see it, each is cut by the margin at its own ends, and stands
-    for the narrowest gap that counts as covered.
+    for the narrowest gap that counts as covered. A plane that slants through lines on levels that sweeps reach has all
+    of these lines, and of the sweeps narrow strips beside them: there a wide gap is an edge, as on any swept face.
     """
-    region = Region.of(cloud.points, near, normal, margin_mm, smallest_part)
-    swept = bool(np.any(cloud.sweep[region.indices] > FAN))
-    lines = np.unique(cloud.sweep[near][cloud.sweep[near] <= FAN])
-    if swept or len(lines) < 2:
-        return region
+    of_fan = cloud.sweep[near] <= FAN
+    lines = np.unique(cloud.sweep[near][of_fan])
+    if len(lines) < 2 or np.count_nonzero(~of_fan) > STRAY_SHARE * np.count_nonzero(of_fan):
+        return Region.of(cloud.points, near, normal, margin_mm, smallest_part)
     pieces = [piece for line in lines for piece in _pieces(cloud.points, near[cloud.sweep[near] == line])]
     longest = max(float(along[-1]) for _, along in pieces)
     kept, length = [near[:0]], 0.0

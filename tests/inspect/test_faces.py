@@ -9,9 +9,9 @@ from core.errors import InputError, OwnCause
 from core.inspect import faces
 from core.inspect.conformity import Limits, Verdict
 from core.inspect.evaluate import evaluate
-from core.inspect.face_region import Region
+from core.inspect.face_region import Region, region_on
 from core.inspect.faces import faces_in_polygons, find_faces
-from core.inspect.fit.plane_search import FoundPlane
+from core.inspect.fit.plane_search import FoundPlane, find_planes
 from core.inspect.gauge import measure_gauge
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
@@ -92,6 +92,45 @@ def test_a_table_that_one_line_alone_reaches_is_no_face(scan):
     cloud = scan.measure(np.random.default_rng(3))
     with pytest.raises(InputError, match="plane face is in view"):
         find_faces(cloud.select(scan.upper | (cloud.sweep == FAN)))
+
+
+def two_levels(sweeps):
+    """Two levels side by side, 18° from the fan's line amid the one to that amid the other, with sweeps across both."""
+    rng = np.random.default_rng(0)
+    reach, width, rise = 60.0, 25.0, 25.0 * np.tan(np.radians(18.0))
+    along = np.arange(-reach, reach, 0.2)
+    lines = [(np.full(len(along), x), along, FAN - k) for k, x in enumerate((-width / 2, width / 2))]
+    for sweep in range(sweeps):
+        across = np.arange(-width, width, 0.2)
+        lines.append((across, (sweep + 0.5) / sweeps * reach + rng.uniform(-0.6, 0.6) * across, sweep))
+    flat = np.vstack([np.column_stack([x, y]) for x, y, _ in lines])
+    points = TABLE_MM * NORMAL + flat @ axes() - np.where(flat[:, :1] > 0, rise, 0.0) * NORMAL
+    points += rng.normal(scale=1e-3, size=points.shape)
+    stripe = np.repeat([number for *_, number in lines], [len(x) for x, *_ in lines])
+    return replace(cloud_at(points), sweep=stripe)
+
+
+@pytest.mark.parametrize("sweeps", [3, 10, 40])
+def test_nothing_is_left_of_a_plane_that_slants_through_lines_of_the_fan_on_swept_levels(sweeps):
+    cloud = two_levels(sweeps)
+    normal = NORMAL + np.tan(np.radians(18.0)) * axes()[0]
+    normal /= np.linalg.norm(normal)
+    distance = float(np.median(cloud.points[cloud.sweep <= FAN] @ normal))
+    near = np.flatnonzero(np.abs(cloud.points @ normal - distance) < 0.25)
+    assert len(np.unique(cloud.sweep[near][cloud.sweep[near] <= FAN])) == 2
+    assert len(region_on(cloud, near, normal, 1.5).indices) == 0
+    assert all(abs(plane.normal @ NORMAL) > np.cos(np.radians(1.0)) for plane in find_planes(cloud))
+
+
+def test_single_wrong_points_of_sweeps_on_a_face_that_none_reaches_do_not_matter(scan):
+    cloud = scan.measure(np.random.default_rng(3), noise=1e-4, plane_errors=False)
+    of_fan = np.flatnonzero(~scan.upper & (cloud.sweep <= FAN))
+    stray = np.flatnonzero(~scan.upper & (cloud.sweep > FAN))[::2000]
+    assert 2 < len(stray) < 0.01 * len(of_fan)
+    alone = region_on(cloud, of_fan, NORMAL, 1.5)
+    assert len(alone.indices) > 0.8 * len(of_fan)
+    with_stray = region_on(cloud, np.sort(np.concatenate([of_fan, stray])), NORMAL, 1.5)
+    assert np.array_equal(with_stray.indices, alone.indices)
 
 
 def test_wrong_points_do_not_matter(scan):
