@@ -47,6 +47,12 @@ READ_BY = {
 Versions of libraries count for every proof; translations where windows are proven: no number depends on a text; what no
 proof reads has no module.
 """
+ASKED_FOR_BY = {
+    "core.cli.app": ("commands",),
+    "core.findings.table": ("findings",),
+    "core.pipeline.steps.brought_sections": ("sections", "reads_study"),
+}
+"""Modules that import what a `core.wing.Wing` names, each with the fields it asks for: nothing else rests on that."""
 PACKED_BY = (
     "pyproject.toml", "constraints", "locks/", "bundle/", ".ci/bare_root", ".ci/matrix", "hatch_build.py", "trisect/",
     "resources/desktop/", "core/processes.py", "core/sources.py", "core/code_cache.py", "core/second_process.py",
@@ -93,14 +99,39 @@ class Tree:
         return found
 
     def _brought(self, name: str) -> set[str]:
-        """Modules that the door of wings imports where a folder of wings is named: `core.door.by_folders`."""
-        if not name.endswith(".wings"):
-            return set()
-        return {one for one in self.files if one.startswith(f"{name}.") and one.endswith(".wing")}
+        """Modules that a module imports by way of wings: their own where it is a folder of them, or what it asks for.
+
+        See `core.door.by_folders` and `ASKED_FOR_BY`.
+        """
+        if name.endswith(".wings"):
+            return self._wings(name)
+        return {
+            named
+            for field in ASKED_FOR_BY.get(name, ())
+            for wing in self._wings("core.wings")
+            for node in self._given_to_wing(wing, field)
+            for named in self._named_in(ast.walk(node), wing)
+        }
+
+    def _wings(self, folder: str) -> set[str]:
+        return {one for one in self.files if one.startswith(f"{folder}.") and one.endswith(".wing")}
+
+    def _given_to_wing(self, module: str, *fields: str) -> list[ast.keyword]:
+        """Arguments of these fields in the calls of `Wing` in a module."""
+        nodes = ast.walk(_parsed(self.files[module]))
+        calls = [node for node in nodes if isinstance(node, ast.Call) and ast.unparse(node.func) == "Wing"]
+        return [given for call in calls for given in call.keywords if given.arg in fields]
 
     def _named_in_module(self, name: str) -> set[str]:
-        path = self.files.get(name)
-        return self._named_in(ast.walk(_parsed(path)), name) if path else set()
+        if (path := self.files.get(name)) is None:
+            return set()
+        nodes = list(ast.walk(_parsed(path)))
+        if name in self._wings("core.wings"):
+            asked_for = (field for fields in ASKED_FOR_BY.values() for field in fields)
+            given = self._given_to_wing(name, *asked_for)
+            left_out = {id(node) for one in given for node in ast.walk(one)}
+            nodes = [node for node in nodes if id(node) not in left_out]
+        return self._named_in(nodes, name)
 
     def _named_by_fixtures(self, conftest: str, asked: set[str]) -> set[str]:
         """Modules named in a conftest outside functions, and in those functions that the tests or pytest itself call.

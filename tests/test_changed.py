@@ -1,13 +1,17 @@
 """A proof is left out only where nothing that it rests on has changed since all were passed."""
 
 import subprocess
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
+from core.wing import Wing
 from tests.changed import (
+    ASKED_FOR_BY,
     PASSED,
     PROVEN,
+    ROOT,
     Tree,
     below_workbench,
     changed_since,
@@ -31,10 +35,15 @@ FILES = {
     "core/cli/__init__.py": "",
     "core/cli/app.py": "NAME, JOB, OURS = 'core.started', 'core.named:function', 'core.wings'\n",
     "core/named.py": "",
+    "core/findings/__init__.py": "",
+    "core/findings/table.py": "OURS = 'core.wings'\n",
     "core/wings/__init__.py": "",
     "core/wings/rig/__init__.py": "",
-    "core/wings/rig/wing.py": "COMMANDS = 'core.wings.rig.commands:commands'\n",
+    "core/wings/rig/wing.py": "WING = Wing(\n    commands='core.wings.rig.commands:commands',\n"
+    "    findings='core.wings.rig.findings:ROWS',\n    other='core.wings.rig.other',\n)\n",
     "core/wings/rig/commands.py": "",
+    "core/wings/rig/findings.py": "",
+    "core/wings/rig/other.py": "",
     "core/wings/rig/unused.py": "",
     "workbench/__init__.py": "",
     "workbench/theme.py": "",
@@ -46,9 +55,10 @@ FILES = {
     "tests/test_far.py": f"import pytest, core.far\n{MARK}\ndef test_far():\n    pass\n",
     "tests/test_run.py": f"import pytest\n{MARK}\ndef test_run(measured):\n    pass\n",
     "tests/test_seen.py": f"import pytest, workbench.theme\n{MARK}\ndef test_seen():\n    pass\n",
+    "tests/test_told.py": f"import pytest, core.findings.table\n{MARK}\ndef test_told():\n    pass\n",
     "tests/test_quick.py": "import core.deep\n",
 }
-PROOFS = {"far", "run", "seen"}
+PROOFS = {"far", "run", "seen", "told"}
 
 
 def git(folder, *words):
@@ -105,13 +115,15 @@ def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
     ("path", "proofs"),
     [
         ("core/deep.py", {"far"}),
-        ("core/__init__.py", {"far", "run"}),
+        ("core/__init__.py", {"far", "run", "told"}),
         ("core/cli/app.py", {"run"}),
         ("core/cli/__init__.py", {"run"}),
         ("core/started.py", {"run"}),
         ("core/named.py", {"run"}),
-        ("core/wings/rig/wing.py", {"run"}),
+        ("core/wings/rig/wing.py", {"run", "told"}),
         ("core/wings/rig/commands.py", {"run"}),
+        ("core/wings/rig/findings.py", {"told"}),
+        ("core/wings/rig/other.py", {"run", "told"}),
         ("core/wings/rig/unused.py", set()),
         ("core/loops.py", set()),
         ("tests/conftest.py", PROOFS),
@@ -245,6 +257,27 @@ def proofs(syntax_trees) -> dict[Path, set[str]]:
 def test_no_proof_of_this_project_is_overlooked(proofs):
     assert len(proofs) > 100
     assert all({"tests.conftest", "core"} <= rests_on for rests_on in proofs.values())
+
+
+def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(proofs):
+    """A change of a command or a drawing would touch nearly every proof, as each tells findings."""
+    rests_on = Tree(ROOT).closure(["core.findings.table"])
+    assert not {name for name in rests_on if name.startswith("core.cli")}
+    assert "core.wings.studies.findings" in rests_on and len(rests_on) < 50
+    assert len(proofs[Path("tests/accuracy/test_coverage.py")]) < 400
+    commands = {"core.wings.studies.commands", "core.wings.rig_planning.commands"}
+    assert commands <= Tree(ROOT).closure(["core.cli.app"])
+    assert "core.wings.studies.printed" in Tree(ROOT).closure(["core.pipeline.steps.brought_sections"])
+
+
+def test_who_asks_for_what_a_wing_names_is_known():
+    """Each field with a place, and a module that reads it: what asked in vain would be left out of every proof."""
+    assert {name for names in ASKED_FOR_BY.values() for name in names} == {
+        field.name for field in fields(Wing) if field.name not in ("name", "after")
+    }
+    for module, names in ASKED_FOR_BY.items():
+        text = (ROOT / (module.replace(".", "/") + ".py")).read_text(encoding="utf-8")
+        assert all(f"wing.{name}" in text for name in names)
 
 
 def test_files_that_no_proof_reads_touch_no_module():
