@@ -56,7 +56,8 @@ class Wing:
     sections
         What it adds to the report.
     findings
-        "module:name" of the rows it adds to the table of findings, each a `core.findings.finding.Finding`; "": none.
+        "module:name" of the rows it adds to the table of findings, each a `core.findings.finding.Finding`, in a module
+        that is light to import; "": none.
     reads_study
         "module:name" of a function of the path of a study.json that gives the `core.report.content.ReportedStudy`, or
         raises InputError; "": it reads none.

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QMainWindow
 
 from core.door import Brought, Origin, by_entry_points, by_folders, found_at
 from core.findings.brought import note_on_unusable
+from core.findings.table import unusable_findings
 from core.report.facts.fact import Fact
 from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
@@ -112,7 +113,7 @@ def window_wings() -> Found[WindowWing]:
 
 def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, Callable[[], object]]:
     """What each entry of the wings does; a notice tells of those that cannot be made."""
-    for one in window_wings().unusable:
+    for one in (*window_wings().unusable, *unusable_findings()):
         bench.notices.warning(text_of(note_on_unusable(one)))
     if note := note_on_no_wings():
         bench.notices.warning(text_of(note))

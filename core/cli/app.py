@@ -122,9 +122,11 @@ def _commands(_spoken: str) -> Any:
 
 
 def whole_command() -> tuple[Any, list[Brought]]:
-    """Make the group of all commands, the wings' included; return it with the list of wings that cannot be used."""
+    """Make the group of all commands, those of the wings among them, and list the wings that cannot be used."""
+    from core.findings.table import unusable_findings
+
     command: Any = get_command(app)
-    unusable = list(wings().unusable)
+    unusable = [*wings().unusable, *unusable_findings()]
     for wing, origin in wings().wings:
         try:
             command.commands = with_commands(command.commands, wing)

@@ -8,11 +8,10 @@ rows; that nothing is proven comes from the facts (`core.findings.proof`), never
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from functools import cache
 from typing import Any
 
-from core.door import found_at
+from core.door import Brought, found_at
 from core.findings import of_artefacts, of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan
 from core.findings.finding import Finding, Weight
 from core.messages import Message
@@ -24,15 +23,33 @@ FINDINGS: Mapping[str, Finding] = {row.code: row for subject in _SUBJECTS for ro
 assert len(FINDINGS) == sum(len(subject.ROWS) for subject in _SUBJECTS)
 
 
+_NO_FINDING = Message("plugin.why_no_finding", "one of its findings is no Finding")
+
+
 @cache
-def _of_wings() -> Mapping[str, Finding]:
-    """The rows that wings add. One whose rows cannot be loaded adds none: its own calls of `note_of` then fail."""
-    found = dict[str, Finding]()
-    for wing in wings():
-        if wing.findings:
-            with suppress(Exception):  # whatever a stranger's module raises: the house tells its own findings
-                found |= {row.code: row for row in found_at(wing.findings)}
-    return found
+def _of_wings() -> tuple[Mapping[str, Finding], tuple[Brought, ...]]:
+    """The rows that wings add, by their codes, and those that cannot be used: the first row of a code counts."""
+    found, unusable = dict[str, Finding](), list[Brought]()
+    for wing, origin in wings().wings:
+        try:
+            rows = tuple(found_at(wing.findings)) if wing.findings else ()
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's module raises: the house tells its own)
+            unusable.append(Brought(wing.name, None, f"{type(error).__name__}: {error}", origin))
+            continue
+        for row in rows:
+            if not isinstance(row, Finding):
+                unusable.append(Brought(wing.name, row, _NO_FINDING, origin))
+            elif row.code in FINDINGS or row.code in found:
+                why = Message("plugin.why_code_taken", "the code of its finding {code} is taken", code=row.code)
+                unusable.append(Brought(wing.name, row, why, origin))
+            else:
+                found[row.code] = row
+    return found, tuple(unusable)
+
+
+def unusable_findings() -> tuple[Brought, ...]:
+    """What wings name as findings and cannot be used: rows, or all of a wing, which then have no notes."""
+    return _of_wings()[1]
 
 
 def finding_of(code: str) -> Finding | None:
@@ -40,12 +57,12 @@ def finding_of(code: str) -> Finding | None:
 
     The wings are asked last: their modules may import those that tell findings of the house when they are imported.
     """
-    return FINDINGS.get(code) or _of_wings().get(code)
+    return FINDINGS.get(code) or _of_wings()[0].get(code)
 
 
 def all_findings() -> Mapping[str, Finding]:
-    """Map every finding's code to its row, those of the program and of its wings."""
-    return {**FINDINGS, **_of_wings()}
+    """Every row, of the house and of the wings, by its code."""
+    return {**_of_wings()[0], **FINDINGS}
 
 
 def note_of(code: str, /, **values: Any) -> Message:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from core.cli import app
+from core.findings import table
 from core.inspect.plan.plugins import plugins
 from core.wing import wings
 from workbench.wing import window_wings
@@ -19,7 +20,7 @@ Install = Callable[[str, Mapping[str, str], Mapping[str, Mapping[str, str]]], No
 
 def look_again() -> None:
     """Forget which packages were found."""
-    for kept in (wings, window_wings, plugins, app._commands):
+    for kept in (wings, window_wings, plugins, app._commands, table._of_wings):
         kept.cache_clear()
 
 

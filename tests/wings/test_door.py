@@ -3,6 +3,8 @@
 import pytest
 
 from core.door import WITHOUT, by_folders
+from core.findings.table import FINDINGS as HOUSE
+from core.findings.table import all_findings, is_grave, note_of
 from core.wing import OUR_COMMANDS, wings
 from tests.simulated import trisect
 from tests.wings.strangers import install, look_again
@@ -76,6 +78,38 @@ def test_a_wing_that_cannot_be_used_is_told_and_every_command_stays(install, nam
     said = trisect("--help")
     assert listed(said) == before
     assert f"{name.lower()} of the package lab-greeting 1.2 cannot be used: " in said.err and why in said.err
+
+
+FINDINGS = """
+from core.findings.finding import Effect, Finding, Weight
+from core.wing import Wing
+
+GRAVE = Finding("lab.bent", Weight.GRAVE, Effect.NO_RESULT, "It is bent.")
+ROWS = (GRAVE,)
+NONE = (GRAVE, 7)
+TWICE = (GRAVE, GRAVE)
+TAKEN = (Finding("scan.moved", Weight.INFORMATION, Effect.NONE, "Ours."), GRAVE)
+WING = Wing("bent", findings="lab_bent:{rows}")
+"""
+
+
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        ("ROWS", ""),
+        ("NONE", "one of its findings is no Finding"),
+        ("TWICE", "the code of its finding lab.bent is taken"),
+        ("TAKEN", "the code of its finding scan.moved is taken"),
+        ("NOWHERE", "AttributeError: module 'lab_bent' has no attribute 'NOWHERE'"),
+    ],
+)
+def test_findings_that_cannot_be_used_are_told_and_those_of_the_house_stay(install, rows, why):
+    install("lab-bent", {"lab_bent": FINDINGS.format(rows=rows)}, {"trisect.wings": {"bent": "lab_bent:WING"}})
+    told = f"bent of the package lab-bent 1.2 cannot be used: {why}." if why else ""
+    assert trisect("--help").err.strip() == told
+    assert all_findings().items() >= HOUSE.items()
+    if rows != "NOWHERE":
+        assert is_grave(note_of("lab.bent"))
 
 
 def test_a_wing_is_left_out_by_its_name(install, monkeypatch):

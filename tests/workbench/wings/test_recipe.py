@@ -72,3 +72,13 @@ def test_nothing_is_told_where_all_can_be_used(hand_bench: Bench, qtbot: Any) ->
     window = QMainWindow()
     qtbot.addWidget(window)
     assert opened_by_entries(hand_bench, window) and hand_bench.notices.all == []
+
+
+def test_findings_of_a_wing_that_cannot_be_used_are_told(install: Install, hand_bench: Bench, qtbot: Any) -> None:
+    source = "from core.wing import Wing\nWING = Wing('torn', findings='lab_torn:ROWS')\n"
+    install("lab-torn", {"lab_torn": source}, {"trisect.wings": {"torn": "lab_torn:WING"}})
+    window = QMainWindow()
+    qtbot.addWidget(window)
+    opened_by_entries(hand_bench, window)
+    (notice,) = hand_bench.notices.all
+    assert "torn of the package lab-torn 1.2 cannot be used: AttributeError: " in notice.text
