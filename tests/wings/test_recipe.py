@@ -7,7 +7,13 @@ import pytest
 from pypdf import PdfReader
 
 from core.door import WITHOUT
+from core.errors import InputError
+from core.files.project.data import KeptStudy, Project
+from core.messages import plain
+from core.pipeline.project.report import with_words
+from core.pipeline.steps.brought_sections import with_studies
 from core.pipeline.steps.report_step import draw_report, results_content
+from tests.report.report_samples import block_content
 from tests.simulated import copy_of, trisect
 from tests.wings.recipe import install_recipe
 from tests.wings.strangers import install, look_again
@@ -79,3 +85,45 @@ def test_a_section_that_fails_is_told_and_the_report_is_made(install, measured, 
     assert content.brought == ()
     (note,) = [str(one) for one in content.notes if one.code == "plugin.failed"]
     assert note.startswith(f"Torn of the package lab-torn 1.2 failed: {why}")
+
+
+READER = """
+from pathlib import Path
+from core.errors import InputError
+from core.wing import Wing
+def read(path):
+    {does}
+WING = Wing("studies", reads_study="lab_read:{function}")
+"""
+
+
+def with_reader(install, monkeypatch, does, function="read"):
+    """A stranger's wing reads studies, ours does not."""
+    monkeypatch.setattr("core.wing.OURS", "core.no_such_folder")
+    source = READER.format(does=does, function=function)
+    install("lab-read", {"lab_read": source}, {"trisect.wings": {"studies": "lab_read:WING"}})
+
+
+@pytest.mark.parametrize(
+    ("does", "function", "why"),
+    [
+        ("import no_such_module", "read", "ModuleNotFoundError: No module named 'no_such_module'"),
+        ("pass", "nothing", "AttributeError: module 'lab_read' has no attribute 'nothing'"),
+        ("return None", "read", "AttributeError"),
+    ],
+)
+def test_a_reader_of_studies_that_fails_is_told_once_and_the_report_is_made(
+    install, monkeypatch, tmp_path, does, function, why
+):
+    with_reader(install, monkeypatch, does, function)
+    content = block_content()
+    kept = tuple(KeptStudy(name, "grr", plain(name)) for name in ("ab", "cd"))
+    told = with_words(content, tmp_path, Project(studies=kept))
+    (note,) = told.notes[len(content.notes) :]
+    assert told.studies == () and str(note).startswith(f"studies of the package lab-read 1.2 failed: {why}")
+
+
+def test_a_study_that_its_reader_refuses_is_refused(install, monkeypatch, tmp_path):
+    with_reader(install, monkeypatch, "raise InputError('it is torn', where=path)")
+    with pytest.raises(InputError, match="it is torn"):
+        with_studies(block_content(), [tmp_path / "study.json"])

@@ -14,7 +14,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.findings.table import note_of
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
-from core.pipeline.steps.brought_sections import study_reader, with_studies
+from core.pipeline.steps.brought_sections import studies_can_be_read, with_studies
 from core.pipeline.steps.report_step import report_content, report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -96,7 +96,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
 def _with_kept_studies(content: ReportContent, folder: Path, project: Project) -> ReportContent:
     """The content with the project's studies that are ticked; where no wing reads them, a note tells it."""
     kept = [one for one in project.studies if one.included]
-    if kept and study_reader() is None:
+    if kept and not studies_can_be_read():
         note = note_of("plugin.studies_not_printed", names=[one.title for one in kept])
         return replace(content, notes=(*content.notes, note))
     return with_studies(content, [study_path(folder, one.id) for one in kept])

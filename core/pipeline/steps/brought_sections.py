@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,14 +40,13 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
     return replace(content, brought=tuple(sections), notes=(*content.notes, *failed))
 
 
-def study_reader() -> Callable[[Path], ReportedStudy] | None:
-    """Return the function of a plug-in (wing) that reads a study.json for the report; None where none does."""
-    places = (wing.reads_study for wing in wings() if wing.reads_study)
-    return next((found_at(place) for place in places), None)
+def studies_can_be_read() -> bool:
+    """Whether a wing is there that reads studies."""
+    return any(wing.reads_study for wing in wings())
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
-    """Add to a report's content the studies in `paths`, each a study.json or its folder.
+    """Add the studies in `paths`, each a study.json or its folder; a note tells where the wing that reads them fails.
 
     Raises
     ------
@@ -56,14 +55,26 @@ def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent
     """
     if not paths:
         return content
-    read = study_reader()
-    if read is None:
+    reading = next(((wing, origin) for wing, origin in wings().wings if wing.reads_study), None)
+    if reading is None:
         what = Message(
             "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
         )
         raise InputError(what, where=paths[0], todo=how_to_get(STUDIES))
-    found = tuple(read(path / STUDY if path.is_dir() else path) for path in paths)
-    return replace(content, studies=(*content.studies, *found))
+    wing, origin = reading
+    found, failed = list[ReportedStudy](), list[Message]()
+    for path in paths:
+        try:
+            study = found_at(wing.reads_study)(path / STUDY if path.is_dir() else path)
+            _try(study.kind, study.facts)
+        except InputError:
+            raise
+        except Exception as error:  # noqa: BLE001  (as above)
+            failed.append(failure(origin or OURS, wing.name, error))
+            continue
+        found.append(study)
+    notes = (*content.notes, *dict.fromkeys(failed))
+    return replace(content, studies=(*content.studies, *found), notes=notes)
 
 
 def _try(title: str, facts: tuple[Fact, ...]) -> None:
