@@ -13,19 +13,24 @@ from itertools import chain
 from typing import Any, Protocol, TypeVar
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QMainWindow
+from PySide6.QtWidgets import QMainWindow, QWidget
 
 from core.door import Brought, Origin, by_entry_points, by_folders, found_at
-from core.findings.brought import note_on_unusable
+from core.findings.brought import OURS as PROGRAM
+from core.findings.brought import failure, note_on_unusable
 from core.findings.table import unusable_findings
+from core.messages import Message
 from core.report.facts.fact import Fact
 from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
 from workbench.language import text_of
+from workbench.notices import Notices
 
 Thing = TypeVar("Thing")
 
 OURS = "workbench.wings"
+
+_NO_WIDGET = Message("plugin.why_no_widget", "what it makes is no widget")
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,24 +129,67 @@ def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, C
 def inspect_tabs(bench: Bench, presenter: QObject) -> Sequence[tuple[InspectTab, Any]]:
     """The tabs of the wings for the page Inspect, each with its widget; a notice tells of those that cannot be made."""
     tabs = ((one, one.opens, one.title, origin) for wing, origin in window_wings().wings for one in wing.tabs)
-    return list(_made(bench, tabs, presenter))
+    return list(_made(bench, tabs, presenter, kind=QWidget))
 
 
-def repeats_parts(bench: Bench, presenter: QObject) -> Sequence[Any]:
+class PartOfWing:
+    """Widget of a wing below the statistics of the repeats; a notice tells what of it fails, once."""
+
+    def __init__(self, widget: Any, name: str, origin: Origin, notices: Notices) -> None:
+        self.widget: QWidget = widget
+        self._part: RepeatsPart = widget
+        self._name, self._origin, self._notices = name, origin, notices
+        self._told = set[str]()
+
+    def refresh(self) -> None:
+        """Refresh the widget."""
+        self._tried(lambda: self._part.refresh(), None)
+
+    def facts(self) -> Sequence[Fact]:
+        """Return the facts of the widget; nothing where it fails, or where they cannot be put into words."""
+        return self._tried(self._facts, ())
+
+    def _facts(self) -> Sequence[Fact]:
+        facts = tuple(self._part.facts())
+        for fact in facts:
+            fact.title()
+            fact.text()
+        return facts
+
+    def _tried(self, call: Callable[[], Thing], otherwise: Thing) -> Thing:
+        try:
+            return call()
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's widget raises: the page goes on)
+            text = text_of(failure(self._origin, self._name, error))
+            if text not in self._told:
+                self._told.add(text)
+                self._notices.warning(text)
+            return otherwise
+
+
+def repeats_parts(bench: Bench, presenter: QObject) -> Sequence[PartOfWing]:
     """What the wings put below the statistics of the repeats; a notice tells of what cannot be made."""
-    parts = ((w, w.below_repeats, w.name, origin) for w, origin in window_wings().wings if w.below_repeats)
-    return [part for _, part in _made(bench, parts, presenter)]
+    parts = (((w, origin), w.below_repeats, w.name, origin) for w, origin in window_wings().wings if w.below_repeats)
+    return [
+        PartOfWing(widget, wing.name, origin or PROGRAM, bench.notices)
+        for (wing, origin), widget in _made(bench, parts, presenter, kind=QWidget)
+    ]
 
 
 def _made(
-    bench: Bench, wanted: Iterable[tuple[Thing, str, str, Origin | None]], *given: object
+    bench: Bench, wanted: Iterable[tuple[Thing, str, str, Origin | None]], *given: object, kind: type = object
 ) -> Iterator[tuple[Thing, Any]]:
     """Call the function at each place; each wanted thing has its place, the name it is told by, and its origin."""
     for thing, place, name, origin in wanted:
+        made: object = None
+        why: Message | str = ""
         try:
             made = found_at(place)(*given)
         except Exception as error:  # noqa: BLE001  (whatever a stranger's page raises: the window opens)
-            unusable = Brought(name, None, f"{type(error).__name__}: {error}", origin)
-            bench.notices.warning(text_of(note_on_unusable(unusable)))
-            continue
-        yield thing, made
+            why = f"{type(error).__name__}: {error}"
+        else:
+            why = "" if isinstance(made, kind) else _NO_WIDGET
+        if why:
+            bench.notices.warning(text_of(note_on_unusable(Brought(name, made, why, origin))))
+        else:
+            yield thing, made

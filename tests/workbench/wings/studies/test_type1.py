@@ -45,7 +45,7 @@ def test_the_repeats_are_studied_beside_their_chart(presenter, show_page, qtbot)
     page = show_page(presenter)
     put_repeats(presenter, [50.0 + 0.01 * number for number in range(2, 6)])
     page.tabs.setCurrentWidget(page.series)
-    (part,) = page.series.parts
+    (part,) = (one.widget for one in page.series.parts)
     qtbot.waitUntil(lambda: part.rows.text_of("Verdict") == "not capable")
     assert part.rows.text_of("Tolerance T") == "0.4 mm"
     assert "4 repeats say little" in part.words.text()
@@ -55,4 +55,4 @@ def test_the_repeats_are_studied_beside_their_chart(presenter, show_page, qtbot)
 def test_the_tab_of_the_wing_is_the_last_and_its_study_stands_below_the_repeats(presenter, show_page):
     page = show_page(presenter)
     assert page.tabs.tabText(page.tabs.count() - 1) == "Studies" == next(iter(page.brought))
-    assert [type(part).__name__ for part in page.series.parts] == ["Type1Part"]
+    assert [type(part.widget).__name__ for part in page.series.parts] == ["Type1Part"]

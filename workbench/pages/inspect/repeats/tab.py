@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
@@ -21,7 +20,7 @@ from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, i
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
-from workbench.wing import RepeatsPart
+from workbench.wing import PartOfWing
 
 ROWS_PX = 230
 """Least width of the statistics."""
@@ -34,10 +33,12 @@ CALIBRATION = 3
 class RepeatsTab(QWidget):
     """Tab with all repeats of the project and their statistics."""
 
-    def __init__(self, repeats: InspectRepeats, parts: Sequence[Any] = (), parent: QWidget | None = None) -> None:
+    def __init__(
+        self, repeats: InspectRepeats, parts: Sequence[PartOfWing] = (), parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self._repeats = repeats
-        self.parts: Sequence[RepeatsPart] = parts
+        self.parts = parts
         self._shown: object = None
         self.table, self.chart, self.words = DataTable(), RunChart(), muted()
         self.rows = ValueRows(least_width=ROWS_PX)
@@ -70,7 +71,7 @@ class RepeatsTab(QWidget):
         self.charts.add(self.histogram, tr("Histogram"))
         self.charts.setMinimumSize(*CHART_PX)
         self.charts.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # as high as there is room
-        numbers = in_column(self.rows, *parts, STRETCH, margins=(0, 6, 0, 0))
+        numbers = in_column(self.rows, *(part.widget for part in parts), STRETCH, margins=(0, 6, 0, 0))
         self.below = UpAndDown(Folding(in_row(self.charts, margins=(0, 6, 0, 0)), numbers, spacing=14))
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
@@ -80,16 +81,19 @@ class RepeatsTab(QWidget):
         in_column(split, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
-        """Show the table of the repeats, their statistics, and the run chart."""
-        repeats, spec = self._repeats, self._repeats.spec
-        wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
+        """Show the state of the presenter."""
+        spec = self._repeats.spec
+        wanted = (self._repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
+        set_text(self.words, self._sentence())
+        if wanted != self._shown:
+            self._shown = wanted
+            self._show_series()
         for part in self.parts:
             part.refresh()
-        set_text(self.words, self._sentence())
-        if wanted == self._shown:
-            return
-        self._shown = wanted
+
+    def _show_series(self) -> None:
+        repeats, spec = self._repeats, self._repeats.spec
         self.table.set_rows([words.repeat_row(repeat) for repeat in repeats.all], [self._tip(r) for r in repeats.all])
         self.table.table.setColumnHidden(CALIBRATION, repeats.calibrations() < 2)  # the tip of a row tells it, too
         statistics = repeats.statistics()
