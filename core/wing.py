@@ -14,7 +14,7 @@ from functools import cache
 from itertools import chain
 from typing import Generic, Protocol, TypeVar
 
-from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, left_out, names_of_entry_points
+from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, found_at, left_out, names_of_entry_points
 from core.messages import Message
 
 OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
@@ -120,10 +120,26 @@ def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
 
 
 def how_to_get(name: str) -> Message:
-    """Tell how to get the wing called `name` that is missing, as the end of a sentence."""
+    """How a wing that is not there is had again, or why it cannot be loaded, as the end of a sentence."""
     if name in left_out() or any(wing.name == name for wing in wings().away):
         return Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
+    if why := _why_not_loaded(name):
+        return Message("advice.wing_broken", "its folder is there, but cannot be loaded: {why}", why=why)
     return Message("advice.wing_missing", "install Trisect with all its folders")
+
+
+def _why_not_loaded(name: str) -> Message | str:
+    """Why a wing of our own, or its commands, cannot be loaded; "" where no folder of the name is there."""
+    for one in wings().unusable:
+        if one.name == name and one.origin is None:
+            return one.why
+    for wing, origin in wings().wings:
+        if wing.name == name and origin is None and wing.commands:
+            try:
+                found_at(wing.commands)
+            except Exception as error:  # noqa: BLE001  (whatever hinders the import is the reason)
+                return f"{type(error).__name__}: {error}"
+    return ""
 
 
 def note_on_no_wings() -> Message | None:

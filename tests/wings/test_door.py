@@ -1,5 +1,7 @@
 """What a wing adds is there; one that is left out, or cannot be used, takes nothing else with it."""
 
+import sys
+
 import pytest
 
 from core.door import WITHOUT, by_folders
@@ -136,6 +138,27 @@ def test_a_command_of_ours_whose_folder_is_gone_says_how_it_is_had(monkeypatch):
     monkeypatch.undo()
     look_again()
     assert all("which is not there; install Trisect with all its folders." in one for one in told)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["import no_such_module\n", "from core.wing import Wing\nWING = Wing('studies', 'no_such_module:commands')\n"],
+)
+def test_a_command_of_ours_whose_folder_cannot_be_loaded_says_why(tmp_path, monkeypatch, text):
+    folder = tmp_path / "broken_wings" / "studies"
+    folder.mkdir(parents=True)
+    for name, written in (("../__init__.py", ""), ("__init__.py", ""), ("wing.py", text)):
+        (folder / name).write_text(written, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr("core.wing.OURS", "broken_wings")
+    look_again()
+    told = trisect("study").err
+    monkeypatch.undo()
+    look_again()
+    for module in [name for name in sys.modules if name.startswith("broken_wings")]:
+        del sys.modules[module]
+    why = "ModuleNotFoundError: No module named 'no_such_module'"
+    assert f"which is not there; its folder is there, but cannot be loaded: {why}." in told
 
 
 def test_where_the_folder_of_wings_is_gone_there_are_none():
