@@ -67,7 +67,7 @@ def compiled(*, fastmath: bool | set[str] = False, inline: bool = False) -> Call
 
 
 def inlined(*, fastmath: bool | set[str] = False) -> Callable[[Function], Dispatcher[Function]]:
-    """Declare a compiled function that becomes part of the compiled functions that call it; Python cannot."""
+    """Declare a compiled function to be inlined in the compiled functions that call it; Python cannot call it."""
     return _declared(fastmath, forceinline=True, no_cpython_wrapper=True)
 
 

@@ -47,7 +47,7 @@ def remove(path: Path) -> None:
 
 
 def remove_tree(folder: Path, *, leave: bool = False) -> None:
-    """Remove a folder with all that is in it, if it is there; raises as `rename`.
+    """Remove a folder with all in it, if it is there; HeldOpen or OSError if that fails, but nothing with `leave`.
 
     With `leave` nothing is raised, and what cannot be removed stays.
     """

@@ -91,7 +91,7 @@ def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tu
 
 
 def fan_behind(fan: FanCalibration, calibrated: Camera, camera: Camera) -> Fan:
-    """Compute the fan that its pictures give with `camera` in place of the `calibrated` one, to first order."""
+    """Compute the fan that its pictures would give with `camera` in place of `calibrated`, to first order."""
     if fan.by_camera is None:
         return fan.fan
     return moved_fan(fan.fan, fan.by_camera @ (parameters_of(camera) - parameters_of(calibrated)))

@@ -54,7 +54,7 @@ class TargetRatio:
         return float(2 * ndtr(-abs(self.ratio - 1) / np.hypot(self.u, scale_sd)))
 
     def note(self, scale_sd: float, other: Message) -> Message:
-        """Note whether the targets' ratio in the pictures agrees with the sizes stated; `other` is one's name."""
+        """Note whether the targets' size ratio agrees with that stated; `other` names the target compared with."""
         if self.fit_p < NOT_FIXED:
             return note_of("target.not_fixed", n=self.pictures, other=other, p=self.fit_p)
         if self.p(scale_sd) >= P_TOLD:

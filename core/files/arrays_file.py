@@ -96,7 +96,9 @@ def texts(*shape: int | str | None, optional: bool = False) -> Member:
 
 
 def read_arrays(path: Path, schema: Schema, *, todo: Message) -> Arrays:
-    """Read the arrays that `schema` names from a file, checked; others in the file are left out.
+    """Read the arrays that `schema` names from a file, and check them; InputError if one is missing or wrong.
+
+    Other arrays in the file are left out.
 
     Raises
     ------

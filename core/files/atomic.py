@@ -59,7 +59,7 @@ _REASONS = {
 
 
 def write_bytes(path: Path, *data: bytes | memoryview, sync: bool = True) -> None:
-    """Write `data` to `path` so that the file is there whole or not at all.
+    """Write the pieces of `data` to `path`, so that the file is there whole or not at all; InputError if that fails.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def folder_beside(to: Path) -> Iterator[Path]:
 
 
 def make_folder(path: Path) -> Path:
-    """Make the folder `path` with its parents if it is missing, and check that it can be written to.
+    """Make the folder `path` and its parents if missing; InputError if that fails, or it cannot be written to.
 
     Raises
     ------

@@ -35,7 +35,7 @@ _TESSELLATION = "core.files.cad_tessellation"
 
 
 def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Array:
-    """Read a STEP file as triangles: their corners (N, 3, 3) in mm over all faces, assemblies put together.
+    """Read a STEP file as triangles: corners (N, 3, 3) in mm over all faces; InputError if it cannot be read.
 
     Parameters
     ----------

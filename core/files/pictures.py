@@ -105,7 +105,7 @@ def is_picture(path: Path) -> bool:
 
 
 def read_picture(path: Path, channel: Channel | None = None, mosaic: Pattern | None = None) -> Picture:
-    """Read a picture file as grey levels (height, width), uint8 or uint16.
+    """Read a picture file as grey levels (height, width), uint8 or uint16; InputError if it is damaged.
 
     Parameters
     ----------

@@ -105,7 +105,7 @@ def fact_of(note: Message) -> str:
 
 
 def without_notes_on(field: str, notes: Iterable[Message]) -> tuple[Message, ...]:
-    """Remove the notes whose findings are told of the record's field called `field`."""
+    """Remove those notes whose findings belong to the field called `field` of a record."""
     return tuple(note for note in notes if (row := finding_of(note.code)) is None or row.told_of != field)
 
 

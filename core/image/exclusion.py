@@ -46,7 +46,7 @@ Reason = Exclusion | Message
 
 
 def message_of(reason: Reason) -> Message:
-    """Return the sentence of a reason to exclude something: an `Exclusion` has one, a message is one."""
+    """Return the sentence that a reason for excluding something tells, be it an `Exclusion` or a message."""
     return reason.message if isinstance(reason, Exclusion) else reason
 
 

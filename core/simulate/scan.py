@@ -121,7 +121,7 @@ class ScanStage:
         }
 
     def further_frames(self, index: int, *sheets: Sheet) -> dict[int, Picture]:
-        """Render frame `index` of the same light in the sensor's second and third exposure, by their numbers."""
+        """Render frame `index` in the sensor's second and third exposure, by their numbers; {} if it has one alone."""
         if not self.sensor.further:
             return {}
         light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))

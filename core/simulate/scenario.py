@@ -246,7 +246,7 @@ class Scenario:
 
     @classmethod
     def from_toml(cls, text: str, where: Path | str = "scenario") -> Scenario:
-        """Read a scenario from a text of TOML whose keys are the fields; `where` it is from is for messages.
+        """Read a scenario from a TOML text, keys as the fields; InputError that names `where` if it is wrong.
 
         Raises
         ------

@@ -92,7 +92,7 @@ def truth_folder(set_folder: Path) -> Path:
 
 
 def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
-    """Write the truth of a simulated set to truth.json and depth.npz in `folder`, and its scenario."""
+    """Write the truth of a simulated set (camera, planes, poses, depths) and its scenario into `folder`."""
     content = {
         "unit": "mm",
         "scenario": dict(scenario),
@@ -114,7 +114,9 @@ def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
 
 
 def load_truth(folder: Path) -> Truth:
-    """Load what is true of a simulated set, from its own folder or its .truth folder; InputError if there is none.
+    """Load the truth of a simulated set (camera, planes, poses, depths); InputError if there is none.
+
+    `folder` is the set's or that of the truth itself.
 
     Raises
     ------

@@ -41,7 +41,7 @@ def counted_observations(observed: Sequence[Observed], verdicts: Sequence[Verdic
 
 
 def solve_judged(start: Bundle, observed: Sequence[Observed], options: CameraOptions) -> tuple[Bundle, list[Verdict]]:
-    """Solve camera and poses by least squares, and judge views and corners by it, again until the judgement stays."""
+    """Solve for camera and poses by least squares, and judge views and corners by the residuals, until both stay."""
     bundle = start
     verdicts = judge(residual_lengths(bundle, observed), [True] * len(observed), options.outliers)
     for _ in range(_MOST_JUDGEMENTS):

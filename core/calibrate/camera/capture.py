@@ -114,7 +114,7 @@ class CaptureJudge:
         return self._cells(np.concatenate([np.zeros((0, 2)), *(view.uv for view in self.views)]))
 
     def judge(self, view: TargetView | None, blur_px: float, time_s: float, why_not: Message | None = None) -> Verdict:
-        """Judge whether to take the `view` of a live picture now: the target is still, sharp, and adds to those taken.
+        """Judge whether to take the `view` in a live picture now: it must be still, sharp and add to those taken.
 
         Parameters
         ----------

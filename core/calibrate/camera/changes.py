@@ -28,7 +28,7 @@ class ParameterChange:
 
     @property
     def unlikely(self) -> bool:
-        """Whether the parameter's change is larger than the limit in its standard deviations."""
+        """Whether the parameter has changed by more than three of the standard deviations to be expected."""
         return abs(self.change) > UNLIKELY * self.sd > 0
 
 

@@ -28,7 +28,9 @@ _MOST_EVENTS = 200_000
 
 
 def read_fields(path: Path) -> Mapping[str, Any]:
-    """Read a calibration file in YAML or JSON as a table of fields; matrices are lists, or tables that hold `data`.
+    """Read a calibration file in YAML or JSON as a table of fields; InputError if it is neither.
+
+    Their values are texts, numbers, lists, or tables that hold `data`.
 
     Raises
     ------

@@ -33,7 +33,7 @@ NOT_STATED = "not stated"
 
 
 def write_dcc(path: Path, content: ReportContent) -> None:
-    """Write a report's results to `path` as a digital calibration certificate (DCC, XML).
+    """Write a report's results as a digital calibration certificate (DCC, XML); InputError if that fails.
 
     Raises
     ------

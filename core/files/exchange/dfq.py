@@ -39,7 +39,7 @@ _VALID, _INVALID = 0, 255
 
 
 def write_dfq(path: Path, content: ReportContent) -> None:
-    """Write all characteristics with their values as a Q-DAS file, in Windows' Latin letters, else in UTF-8.
+    """Write a report's characteristics as a Q-DAS file in Latin letters, else UTF-8; InputError if that fails.
 
     Raises
     ------

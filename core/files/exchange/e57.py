@@ -39,7 +39,7 @@ def write_e57(
     calibration_id: str = "",
     frame: ViewFrame = CAMERA_FRAME,
 ) -> None:
-    """Write a point cloud as an E57 file of one scan: x, y, z in m, intensity = σ in mm.
+    """Write a point cloud as E57: x, y, z in m, intensity = σ in mm; InputError if it has no point or that fails.
 
     Parameters
     ----------

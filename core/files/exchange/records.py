@@ -44,7 +44,7 @@ FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "le
 
 
 def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
-    """Make the row, by FACT_COLUMNS, of one fact of the result called `of`, its words in the language of `words`."""
+    """Make the row, by FACT_COLUMNS, of one fact (named value) of the result `of`, in the language of `words`."""
     low, high = (None, None) if fact.interval is None else map(finite, fact.interval)
     value = finite(fact.value) if isinstance(fact.value, float) else fact.value
     return {
@@ -60,7 +60,7 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
 
 
 def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fact]]:
-    """List all facts of a report's studies, table values included, each with its study's name."""
+    """List all facts (named values) of a report's studies, table values included, each with its study's name."""
     return [
         (study.title(words), fact)
         for study in content.studies
@@ -69,7 +69,7 @@ def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fa
 
 
 def facts_of_steps(content: ReportContent) -> list[tuple[str, Fact]]:
-    """List all facts of the steps that a report's result rests on, each with the name of its step."""
+    """List all facts (named values) of the steps a report's result rests on, each with the name of its step."""
     return [(of, fact) for of, facts in content.facts.items() for fact in facts]
 
 
@@ -190,7 +190,7 @@ def _said(value: float | None) -> str:
 
 
 def write_result_csv(path: Path, content: ReportContent) -> None:
-    """Write a report's characteristics as CSV, a line each; a value that is not known is an empty cell.
+    """Write a report's characteristics as CSV, a line each, cells of unknown values empty; InputError if that fails.
 
     Raises
     ------

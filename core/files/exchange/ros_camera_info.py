@@ -21,7 +21,7 @@ MODELS = ("plumb_bob", "rational_polynomial")
 
 
 def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
-    """Write a camera's calibration as the YAML file camera_info of ROS.
+    """Write a camera's calibration as ROS's camera_info YAML file; InputError if it has skew, or that fails.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera_info(path: Path) -> CameraCalibration:
-    """Read a camera's calibration from a YAML file camera_info of ROS.
+    """Read a camera's calibration from ROS's camera_info YAML file; InputError if it is none.
 
     Raises
     ------

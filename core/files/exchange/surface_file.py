@@ -36,7 +36,7 @@ class OtherSurface:
 
 
 def read_surface(path: Path) -> OtherSurface:
-    """Read a surface from a PLY, STL, STEP (all in mm) or E57 file (in m), as points or as triangles.
+    """Read points or triangles from a PLY, STL, STEP (in mm) or E57 file (in m); InputError if that fails.
 
     A PLY with faces is taken as triangles, unless its vertices have a `sigma`: then they were measured. Points may have
     normals (nx, ny, nz) and `sigma` in mm.

@@ -67,7 +67,7 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_xlsx(path: Path, content: ReportContent) -> None:
-    """Write a report as an Excel workbook, a sheet each for results, budgets, studies, frames, facts and settings.
+    """Write a report as an Excel workbook: results, budgets, studies, frames, facts and settings on a sheet each.
 
     Cells hold numbers in full, and show as many decimals as the report does.
 

@@ -42,7 +42,7 @@ _WRITE_ONE = Message(
 
 
 def read_plan(path: Path) -> InspectionPlan:
-    """Read and check the inspection plan in a file plan.toml.
+    """Read and check the inspection plan in a plan.toml; InputError if it is missing or wrong.
 
     Raises
     ------

@@ -242,7 +242,7 @@ def _present(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def master_of(table: MasterTable, path: Path) -> Master:
-    """Make the master, a part measured better elsewhere, that the table [master] of the plan at `path` describes.
+    """Make the master, a known length measured like the part, that [master] of the plan at `path` describes.
 
     Raises
     ------

@@ -88,7 +88,7 @@ class Repeat:
 
     @property
     def values(self) -> dict[str, Any]:
-        """Values of the repeated measurement by their names in files; no entry of doubts if there are none."""
+        """Values of the repeated measurement by their names in files; `doubts` is left out if empty."""
         values = asdict(self)
         return values if self.doubts else {name: value for name, value in values.items() if name != "doubts"}
 

@@ -66,7 +66,7 @@ def is_project(path: Path) -> bool:
 
 
 def read_project(path: Path) -> ProjectFile:
-    """Read a project; `path` is its folder, or the project.json in it (or a version of it in backups).
+    """Read the project at `path`, its folder or project.json (or a backup of that); InputError if it cannot be read.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def create_project(folder: Path, file: ProjectFile) -> None:
 def write_project(
     folder: Path, file: ProjectFile, *, keep_s: float = 0.0, why: str = "", by: Signed | None = None
 ) -> None:
-    """Write project.json, whole or not at all, unless it says the same already; the earlier content goes to backups.
+    """Write a project as project.json, unless it says the same already; the earlier content goes to backups.
 
     Parameters
     ----------

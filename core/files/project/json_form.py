@@ -169,7 +169,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
 
 
 def read_project_text(path: Path) -> ProjectFile:
-    """Read and check the project in a file that holds the text of `project_text`.
+    """Read and check the project in a file like project.json; InputError if it is damaged, wrong or of a newer program.
 
     Raises
     ------

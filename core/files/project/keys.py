@@ -90,7 +90,7 @@ def finished(step: str, project: Project, results: Mapping[str, Done], at: datet
 
 
 def with_outdated(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
-    """Mark as out of date all `results` that rest on the result of `step`, which was made anew under the same id."""
+    """Mark as out of date all `results` that rest on the result of `step`, as it was made anew under the same name."""
     anew, results = {_MADE[step]}, dict(results)
     for name in STEPS:
         done = results.get(name)

@@ -150,7 +150,7 @@ def lock_owner(folder: Path) -> LockOwner | None:
 
 
 def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
-    """Lock a project for this program, or, with `take_over`, even if another program has it open.
+    """Lock a project for this program; ProjectInUse if it is open elsewhere, unless it is to `take_over`.
 
     Raises
     ------

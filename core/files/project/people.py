@@ -91,7 +91,7 @@ def with_pin(rules: Rules, name: str, pin: str) -> Person:
 
 
 def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
-    """Write a project's people and rules, after their change is in the audit trail.
+    """Write a project's people and rules, and into the audit trail their change; InputError if `by` may not.
 
     Raises
     ------

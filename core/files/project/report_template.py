@@ -66,7 +66,7 @@ class _Template(Table):
 
 
 def read_report_template(path: Path) -> ReportTemplate:
-    """Read and check a report template (TOML) and its logo.
+    """Read and check a report template (TOML) and its logo; InputError if one is missing or wrong.
 
     Raises
     ------

@@ -84,7 +84,7 @@ class Recorder:
             return len(self._queue)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
-        """Queue a picture to be written as `name`; False if it is dropped. The array must not be changed any more.
+        """Queue a picture, which must not change any more, to be written as `name`; False if it is dropped.
 
         Parameters
         ----------

@@ -157,7 +157,7 @@ def require_folder(folder: Path) -> None:
 
 
 def open_set(folder: Path) -> RecordingSet:
-    """List the pictures of the recording set in `folder` by part, and check names and sizes without decoding them.
+    """List the pictures of the set in `folder` by part, not decoding them; InputError if names or sizes are wrong.
 
     Raises
     ------

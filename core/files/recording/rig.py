@@ -644,7 +644,7 @@ def require_tables(rig: Rig, path: Path, *names: str) -> None:
 
 
 def read_rig(path: Path) -> Rig:
-    """Read and check a rig.toml as a rig; tables that are not there are left out, for the steps that need them to miss.
+    """Read and check a rig.toml as a rig; InputError if it is wrong, but a table may be missing.
 
     Raises
     ------

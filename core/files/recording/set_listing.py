@@ -60,7 +60,7 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
 
 
 def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[str, ...]:
-    """List the names of pictures and films of an unread kind in a folder that `fits` accepts, in order."""
+    """List the names, in order, of pictures and films in a folder that are not read, if `fits` accepts them."""
     if folder is None or not folder.is_dir():
         return ()
     try:
@@ -71,7 +71,7 @@ def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> t
 
 
 def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
-    """Note pictures and films of an unread kind in a folder whose names `fits` accepts; () if none."""
+    """Note pictures and films in a folder that are not read, if `fits` accepts their names; () if none."""
     names = names_not_read(folder, fits)
     if folder is None or not names:
         return ()

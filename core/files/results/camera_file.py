@@ -148,7 +148,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera(path: Path) -> CameraCalibration:
-    """Read a camera's calibration from camera.json; image_size, matrix and distortion alone suffice.
+    """Read a camera's calibration from camera.json, also without uncertainties; InputError if missing or wrong.
 
     Raises
     ------

@@ -36,7 +36,7 @@ def point_columns(kind: FrameKind) -> dict[str, str]:
 
 
 def write_points_csv(path: Path, cloud: Cloud, frame: ViewFrame = CAMERA_FRAME, progress: Progress = silent) -> None:
-    """Write a point cloud as CSV, a line for each point, coordinates in `frame`.
+    """Write a point cloud as CSV, a line for each point, coordinates in `frame`; InputError if that fails.
 
     Frame −1 is the reference, measured by the fan itself.
 

@@ -158,7 +158,7 @@ def write_comparison_csv(path: Path, comparison: Comparison) -> None:
 
 
 def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Copy the comparison.ply at `source` to `path`, with places and normals transformed to `frame`.
+    """Copy comparison.ply at `source` to `path`, in `frame` instead of its own; InputError if that fails.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
 
 
 def write_comparison_csv_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Copy the comparison.csv at `source` to `path`, with places and normals transformed to `frame`."""
+    """Copy comparison.csv at `source` to `path`, in `frame` instead of its own; InputError if that fails."""
     try:
         head, *rows = [line.split(",") for line in read_bytes(source).decode().splitlines()]
         values = np.array(rows, dtype=np.float64).reshape(-1, len(head))

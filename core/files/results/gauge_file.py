@@ -160,7 +160,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
 
 
 def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
-    """Read a thickness from gauge.json, its faces' points taken from `cloud`.
+    """Read a thickness from gauge.json, its faces' points taken from `cloud`; InputError if it is missing or wrong.
 
     The file's `verdict` is for other programs and is not read: it follows anew from the numbers and `doubts`, so that
     no file, of an earlier version or changed by hand, says more than they prove; one that does not say that it is

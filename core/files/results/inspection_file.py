@@ -184,7 +184,7 @@ def write_inspection(
 
 
 def read_inspection(path: Path) -> InspectionFile:
-    """Read an inspection from inspection.json, with its points if inspection.npz is beside it.
+    """Read an inspection from inspection.json, points from inspection.npz if there; InputError if missing or wrong.
 
     Raises
     ------

@@ -35,7 +35,7 @@ _RELATIONS = (
 
 
 def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write a mesh as Wavefront OBJ in mm, with normals; measured and filled triangles are groups.
+    """Write a mesh as Wavefront OBJ in mm, measured and filled triangles as groups; InputError if that fails.
 
     Places and directions are those of `frame`, which the head names.
 
@@ -54,7 +54,7 @@ def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
 
 
 def write_3mf(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME, name: str = "scan") -> None:
-    """Write a mesh as 3MF in mm; measured and filled triangles are two objects.
+    """Write a mesh as 3MF in mm, measured and filled triangles as two objects; InputError if that fails.
 
     Places are those of `frame`, which the description names.
 
@@ -109,7 +109,7 @@ def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64
 
 
 def write_stl(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write a mesh's triangles as binary STL in mm, in `frame`; their normals face the camera.
+    """Write a mesh as binary STL in mm, in `frame`, its normals facing the camera; InputError if that fails.
 
     Raises
     ------

@@ -66,7 +66,7 @@ def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -
 
 
 def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silent) -> dict[str, Triangles]:
-    """Read every nominal surface that a plan names, by its name: a file in `folder`, or a full path.
+    """Read each nominal surface that a plan names, a file in `folder` or full path; InputError if one is wrong.
 
     A surface that several features name is as fine as the smallest of their tolerances wants it.
 

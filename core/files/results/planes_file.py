@@ -257,7 +257,7 @@ def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> Non
 
 
 def read_planes(path: Path, camera: Camera) -> FanCalibration:
-    """Read the calibration of the light planes for `camera` from planes.json; the planes' `pi` alone suffice.
+    """Read the light planes' calibration for `camera` from planes.json; InputError if it is missing or wrong.
 
     The poses come back without their points, which the file does not keep.
 

@@ -70,7 +70,9 @@ class MeshFile:
 
 
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write a point cloud as binary PLY: x y z nx ny nz sigma intensity frame, and what its comments name.
+    """Write a point cloud as binary PLY, with normals, σ, intensity and frame of each point; InputError if that fails.
+
+    In this order: x y z nx ny nz sigma intensity frame; behind them what the comments in its head say.
 
     Where the surface's normal is not known, nx ny nz are the ray back to the camera: programs stumble over zeros.
     Places and directions are those of `frame`, which the head states; what is read back is in the camera frame again.
@@ -110,7 +112,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame 
 
 
 def read_cloud(path: Path) -> CloudFile:
-    """Read a point cloud from cloud.ply, transformed to the camera frame from that it is written in.
+    """Read a point cloud from cloud.ply, in the camera frame whatever it is written in; InputError if it is wrong.
 
     Raises
     ------
@@ -175,7 +177,7 @@ def _told_offset(comments: Sequence[str], path: Path) -> Array:
 
 
 def write_mesh(path: Path, mesh: Mesh, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
-    """Write a mesh as binary PLY: vertices with normals and sigma, triangles, with flags of those that fill holes.
+    """Write a mesh as binary PLY, with normals, σ and flags of triangles over holes; InputError if that fails.
 
     Raises
     ------
@@ -201,7 +203,7 @@ def read_mesh(path: Path) -> Mesh:
 
 
 def read_mesh_file(path: Path) -> MeshFile:
-    """Read mesh.ply with what its head tells, its mesh transformed to the camera frame.
+    """Read mesh.ply and what its head tells, the mesh in the camera frame; InputError if missing or damaged.
 
     Raises
     ------

@@ -65,7 +65,7 @@ class ProfileFile:
 
 
 def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureStep], shown: int, of: str) -> None:
-    """Write a profile's thickness, and what each of its pictures gave, as profile.json.
+    """Write a profile's thickness, and what each of its pictures gave, as profile.json; InputError if that fails.
 
     `shown` is the index of the picture whose faces gauge.json has, `of` the calibration's id.
 

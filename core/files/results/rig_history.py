@@ -98,7 +98,7 @@ class PastCheck:
 
     @property
     def looked_at(self) -> tuple[str, str, str]:
-        """Ids of pictures, calibration and characteristic; a later check with the same ones replaces this one."""
+        """Ids of pictures and calibration, and characteristic: a later check with the same three replaces this one."""
         return self.pictures_id, self.calibration_id, self.characteristic
 
     @property
@@ -191,7 +191,7 @@ class RigHistory:
         return tuple(check for check in self.checks if check.calibration_id == calibration_id)
 
     def artefacts(self, calibration_id: str, when: datetime) -> tuple[ArtefactCheck, ...]:
-        """Select for each artefact measured with a calibration the check nearest in time to `when`."""
+        """Select, for each artefact measured with the calibration `calibration_id`, the check nearest to `when`."""
         found: dict[str, ArtefactCheck] = {}
         for one in sorted(self.of_calibration(calibration_id), key=lambda one: abs(one.taken_at - when)):
             if one.artefact not in found and (measured := one.of_artefact) is not None:
@@ -324,7 +324,7 @@ def read_history(name: str) -> RigHistory:
 
 
 def store_check(name: str, check: PastCheck) -> RigHistory:
-    """Add a check to the history of the rig called `name`, write it and return it.
+    """Add a check to the history of the rig called `name` and write it; returns the history, InputError if it fails.
 
     Raises
     ------

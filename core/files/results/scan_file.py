@@ -176,7 +176,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
 
 
 def read_scan(path: Path) -> ScanFile:
-    """Read a solved scan from scan.npz.
+    """Read a solved scan from scan.npz; InputError if it is missing, damaged or wrong.
 
     Raises
     ------

@@ -83,7 +83,7 @@ _MEMBERS = {
 
 
 def write_shown(inspection: Path, shown: ShownInspection) -> None:
-    """Write the drawing of an inspection beside its file `inspection`; InputError if it cannot be written."""
+    """Write what is drawn of an inspection on its scan beside its file `inspection`; InputError if that fails."""
     arrays: dict[str, NDArray[Any]] = {}
     features = []
     for number, one in enumerate(shown.features):
@@ -108,7 +108,7 @@ def write_shown(inspection: Path, shown: ShownInspection) -> None:
 
 
 def read_shown(inspection: Path, plan: Mapping[str, Any]) -> ShownInspection | None:
-    """Read the drawing stored beside the file `inspection`; None if there is none of this inspection and `plan`.
+    """Read what is drawn of an inspection on its scan, beside the file `inspection`; None if not of this `plan`.
 
     `plan` is what is to be shown, by the keys of plan.toml.
 

@@ -99,7 +99,7 @@ def krige(right: Array, left: Array, reach: float) -> Array:
 
 @inlined()
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
-    """Compute y of a line at x = 0 for one `change` of curvature out of those that `krige` tries.
+    """Compute y in px of a line at x = 0 under assumption number `change` on how much its curvature varies.
 
     It is linear in the y of bins `right` (N, 4), `left` (M, 4).
     """
@@ -148,7 +148,7 @@ def _log_sum(scores: Array) -> float:
 
 @inlined()
 def straight_sigma(right: Array, left: Array) -> float:
-    """Compute the standard uncertainty in px of the middle of a straight line through all these bins."""
+    """Compute the standard uncertainty in px of a straight line through bins `right`, `left` (N, 4) at its middle."""
     ahead, behind = 0.0, 0.0
     for k in range(len(right)):
         ahead += right[k, INFORMATION]

@@ -55,7 +55,7 @@ class LineAt(NamedTuple):
 
 @inlined()
 def local_fit(line: LineAt, origin: tuple[float, float], reach: float, cell: float, fit: Array, share: Array) -> bool:
-    """Fit a curve to a line within ± `reach` px of its segment; False if that is not possible.
+    """Fit a curve to a line within ± `reach` px of its segment, into `fit` (FIT,); False if that is not possible.
 
     The frame's origin is at `origin`, u and v. Into `share` (K,) goes what the errors of the cells of `cell` px do to
     the line's place, in pixels for one standard deviation of the mean of a cell's bins.

@@ -93,7 +93,7 @@ def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline
 def bracketed(
     long: Sequence[Centreline], short: Sequence[Centreline], saturated: NDArray[np.bool_]
 ) -> tuple[tuple[Centreline, ...], Exposures]:
-    """Replace what is saturated in the `long` exposure's centrelines by points of the `short` one.
+    """Replace saturated points of the `long` exposure's centrelines by the `short` one's; also compare both.
 
     The centrelines come longest first. Heights are in grey levels of the long exposure, against which the short one is
     told.

@@ -37,5 +37,5 @@ def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
 
 
 def are_exchanged(ratios: Sequence[float]) -> bool:
-    """Whether fan on and off are exchanged in most pairs of pictures, by their `light_off_over_on`."""
+    """Whether fan on and off are exchanged in most pairs, by `ratios` of light in off alone to on alone."""
     return len(ratios) > 0 and float(np.median(ratios)) > _TIMES

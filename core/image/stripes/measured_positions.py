@@ -58,7 +58,7 @@ class StripePicture:
 
 
 def by_measured_section(lit: StripePicture, lines: list[Refined]) -> list[Refined] | None:
-    """Locate stripes by their picture's own cross-section; None where a Gaussian does or none is known.
+    """Locate stripes by the cross-section measured in their picture; None to keep their places by a Gaussian.
 
     Parameters
     ----------

@@ -150,7 +150,7 @@ def _times(noise: NoiseModel, other: NoiseModel, level: float) -> float:
 def estimate_noise_of_pair(
     first: NDArray[np.float32], second: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None
 ) -> NoiseModel:
-    """Estimate the noise of one of two pictures (H, W) of the same still scene from their difference.
+    """Estimate the noise of one picture (H, W) from its difference to another of the same still scene.
 
     Raises ValueError if their shapes differ.
     """

@@ -66,7 +66,7 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
 
 
 def compression_sigma(height: Array, noise: NoiseModel) -> Array:
-    """Compute the uncertainty (N,) in px that lossy compression adds to stripes of height (N,)."""
+    """Compute the least uncertainty (N,) in px that lossy compression leaves stripes of this height (N,)."""
     return np.asarray(COMPRESSION_SHARE * noise.compression.grey / np.maximum(height, 1.0))
 
 
@@ -98,7 +98,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
 
 
 def scatter(lines: list[Array], correlation: float) -> float:
-    """Compute the standard deviation in px of all points of some lines (N, ≥ 4) about them; 0 if too few."""
+    """Compute the standard deviation in px of the points (N, ≥ 4) of lines about smooth lines; 0 if too few."""
     lag = max(1, round(correlation))
     sums = [_excess(points, np.zeros(len(points)), lag, correlation) for points in lines]
     number = sum(n for _, n in sums)

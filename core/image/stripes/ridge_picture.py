@@ -20,7 +20,7 @@ from core.model.arrays import Array
 
 
 def ridge_strength(picture: NDArray[np.float32], settings: StripeSettings) -> NDArray[np.float32]:
-    """Compute for each pixel (H, W) the height in grey levels of a stripe of this width with the same filter response.
+    """Compute for each pixel (H, W) the height in grey levels of the stripe there; 0 where there is no ridge.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def quantile_of_magnitudes(values: Array, share: float) -> float:
 
 @inlined()
 def running_median(values: Array, length: int) -> Array:
-    """Compute the median of the `length` (odd) values around each of `values` (N,); the ends are repeated beyond."""
+    """Compute the median of the `length` (odd) values around each of `values` (N,), end values repeated beyond."""
     count, half = len(values), length // 2
     window = new_row(length)
     for k in range(length):

@@ -42,7 +42,7 @@ def as_measured(
 
 
 def stated_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings | None]) -> tuple[Message, ...]:
-    """Note that a width far from the `told` one was `used`, naming the farthest; nothing if none was."""
+    """Note that much wider or narrower stripes were `used` than `told`, with the farthest width; () if not."""
     if told is None:
         return ()
     widths = [settings.width_px for settings in used if settings is not None]

@@ -68,7 +68,7 @@ def on_board(place: Place, grid: Array, board: Checkerboard) -> tuple[Array, Arr
 
 
 def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
-    """Drop the outermost corners of `grid` (R, C, 2) where the ground around the board is as dark as its black squares.
+    """Drop the outermost corners of `grid` (R, C, 2) if the ground is as dark as the board's black; else None.
 
     None if it is not: the ground must be seen on two sides at least, and be dark on all on which it is seen.
     """

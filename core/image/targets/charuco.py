@@ -57,7 +57,7 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
 
 
 def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
-    """Make OpenCV's dictionary of as many markers as `board` has.
+    """Make OpenCV's dictionary of the markers on `board`; InputError if it needs more than there are.
 
     Raises
     ------

@@ -113,7 +113,7 @@ def contrast_of(picture: Picture, grid: Array) -> float:
 
 
 def grow(picture: NDArray[np.uint8], grid: Array, most: int = 60) -> tuple[Array, bool]:
-    """Extend the corners `grid` (R, C, 2) by whole rows and columns, at most to `most`, as far as the board goes on.
+    """Extend corners `grid` (R, C, 2) by rows and columns while the board goes on; also tell if it is cut off.
 
     Returns
     -------

@@ -65,7 +65,7 @@ class PictureSpline:
 
 
 def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float) -> Profiles:
-    """Measure grey profiles through `uv` (K, 2) along unit vectors `normal` (K, 2), from dark to bright."""
+    """Find the edges on grey profiles through `uv` (K, 2) along `normal` (K, 2), which points from dark to bright."""
     half = round(half_width / STEP)
     t = np.arange(-half - _REACH, half + _REACH + 1) * STEP
     levels = spline.at(uv[:, None, :] + t[None, :, None] * normal[:, None, :])

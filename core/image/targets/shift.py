@@ -64,7 +64,7 @@ def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
 
 
 def followed_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure how many px the target's marks moved between pictures, each followed alone; None if few are.
+    """Measure how many px the target's marks moved from `before` to `after`, each followed; None if too few are.
 
     The median length of the marks' displacements (Lucas & Kanade, in the pyramid of J.-Y. Bouguet, 2000): far quicker
     than finding the target anew, for movements of a few pixels. A grid that moved by just its spacing looks unmoved
@@ -93,7 +93,7 @@ def _followed(one: Picture, other: Picture, points: NDArray[np.float32], window:
 
 
 def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """Measure how many px the target's picture moved from `before` to `after` as a whole; None if unclear.
+    """Measure how many px the picture of a target moved from `before` to `after`; None if the two are too unlike.
 
     The target is not searched in `after`. The shift is the one under which most pixels at the target's edges look alike
     in both pictures, refined by robust least squares on the slopes (B. D. Lucas, T. Kanade, An iterative image

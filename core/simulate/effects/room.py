@@ -58,7 +58,7 @@ class RoomEffects:
         )
 
     def added(self, index: int, shape: tuple[int, ...], readout_s: float, rng: np.random.Generator) -> Map | None:
-        """Compute by what share of itself the room's light is more in frame `index` (−1: the reference); None if by 0.
+        """Compute the change of the room's light in frame `index` (−1: the reference) as a share of it; None if none.
 
         (h or 1, w or 1).
         """

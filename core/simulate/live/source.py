@@ -183,7 +183,7 @@ class SimulatedSource:
         return not self._timer.is_paced
 
     def go_on(self, frame: Frame) -> None:
-        """Let the plate move on from a pose that it holds until this `frame` of it was taken or rejected."""
+        """Let the plate move on from the pose it is held at: `frame`, taken there, was recorded or is useless."""
         with self._changed:
             self._hand.go_on(frame.index)
 

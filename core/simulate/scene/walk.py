@@ -42,7 +42,7 @@ class Walk(NamedTuple):
 
 @cache
 def walk(albedo: float) -> Walk:
-    """Simulate the paths of photons scattered under the surface of matter with this `albedo` of a single collision."""
+    """Simulate where photons that enter matter of this single-scattering `albedo` leave it again."""
     rng = np.random.default_rng(20_010)
     first = rng.exponential(size=FOLLOWED)
     depth, aside = first.copy(), np.zeros(FOLLOWED)

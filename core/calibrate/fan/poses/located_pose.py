@@ -66,7 +66,7 @@ class LocatedPose(Excludable):
 
 
 def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
-    """Estimate where the target is and which of its stripes are straight; a pose that cannot be used says why."""
+    """Estimate the target's pose and find its straight stripes; a pose that cannot be used has an exclusion."""
     nowhere = LocatedPose(features, Pose.identity(), np.nan, (), exclusion=features.exclusion)
     if not features.used or features.view is None:
         return nowhere

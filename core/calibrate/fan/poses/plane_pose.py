@@ -95,7 +95,7 @@ def measure_plane_pose(
     margin_mm: float | None = None,
     beside: ExtraPictures = NOTHING,
 ) -> PoseFeatures:
-    """Find the target's points and the laser's stripes in the pictures of one pose; one that cannot be used says why.
+    """Find target points and laser stripes in the pictures of one pose; if it cannot be used, the reason.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ cache lives on."""
 def influences(
     heights: tuple[float, ...], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
 ) -> tuple[Array, Array]:
-    """Compute weights (K, DEGREE + 1) of pixels across stripes of K heights, and speckle's share of variance.
+    """Compute weights (K, DEGREE + 1) of pixels across stripes of K heights, and speckle's share (K,) of variance.
 
     At x stripe σ from the middle ψ per pixel is x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1, and 0 beyond REACH. Heights
     and background are in grey levels, the width is a σ in px. All figures are rounded to steps of 8 %, which costs

@@ -188,7 +188,7 @@ class Section:
         return self._of_level(round(math.log(max(height, 1e-3)) / _HEIGHT_CLASS))
 
     def weights_along(self, height: Array) -> tuple[NDArray[np.int64], list[Weights]]:
-        """Compute optimal weights of pixels for some stripe heights: index (N,) of each, and the weights."""
+        """Compute optimal pixel weights for stripe heights (N,): index (N,) into a list of weights, and that list."""
         levels, kind = np.unique(np.round(np.log(np.maximum(height, 1e-3)) / _HEIGHT_CLASS), return_inverse=True)
         return kind.astype(np.int64), [self._of_level(int(level)) for level in levels]
 
@@ -198,7 +198,7 @@ class Section:
         return self._known[level]
 
     def variance_by(self, psi: Array, height: float) -> float:
-        """Compute the variance in px² of the place of 1 px of stripe whose pixels `psi` (S,) weights."""
+        """Compute the variance in px² of a stripe's place by 1 px of its length, pixels weighted by `psi` (S,)."""
         derivative, covariance, strip = self._model(height)
         return float(psi @ covariance @ psi) / (strip * float(psi @ derivative)) ** 2
 

@@ -267,7 +267,7 @@ def cut_residuals(
 
 @inlined()
 def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
-    """Average the scores of cuts about each point: (N, 3) offset in px, its variance in px², total weight.
+    """Average the scores of cuts in a window about each point: (N, 3) offset in px, its variance, total weight.
 
     The offset is that of a straight line through the window's cuts: a window cut short has its middle elsewhere. It is
     as smooth as the window, so it is worked out at some points and lies on cubics between them

@@ -14,7 +14,7 @@ _HOLE_PX = 0.6  # more than usual from one point to the next: what lies between 
 
 @compiled(inline=True)
 def tracing_step(filter_px: float) -> int:
-    """Compute the largest whole distance in px of points that keeps what a filter of σ `filter_px` leaves."""
+    """Compute how many px apart traced points may be without loss behind a filter of σ `filter_px`; a whole number."""
     return max(1, int(filter_px / _FILTER_PER_STEP))
 
 
