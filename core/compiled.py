@@ -58,7 +58,10 @@ numba.core.config.reload_config()  # type: ignore[no-untyped-call]  # should it 
 
 
 def compiled(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Function], Dispatcher[Function]]:
-    """Declare a compiled function: without Python's lock, division by zero as in numpy.
+    """Declare a function that is compiled, runs without Python's lock, and divides by zero as numpy does.
+
+    With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows. With `inline` it becomes part of
+    the compiled functions that call it, and Python can call it too.
 
     With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows. With `inline` it becomes part of
     the compiled functions that call it, and Python can call it too.

@@ -218,7 +218,7 @@ class Language:
     def number(self, value: float, spec: str = "") -> str:
         """Format a number by Python's format `spec`, with this language's decimal sign.
 
-        Its decimal sign here, a true minus sign, no-break spaces for ','.
+        It gets a true minus sign, and no-break spaces for ','.
         """
         return format(value, spec).translate(str.maketrans("-.,", f"{MINUS}{self.decimal}{NO_BREAK_SPACE}"))
 

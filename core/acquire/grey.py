@@ -27,7 +27,7 @@ def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.b
 
 
 def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[Any]:
-    """Compute grey levels (height, width) of a picture with OpenCV's order of colours, by `channel` or its grey.
+    """Compute grey levels (height, width) of a picture in OpenCV's order of colours: its `channel`, or all weighted.
 
     Parameters
     ----------

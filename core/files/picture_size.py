@@ -40,7 +40,7 @@ def opened_head(path: Path) -> Iterator[Image.Image]:
 def declared_sizes(data: bytes) -> Iterator[tuple[int, int]]:
     """Yield (width, height) in px of each picture declared in the bytes of a PNG, BMP, JPEG or TIFF file.
 
-    None for other files or a truncated head.
+    Nothing of other files or a truncated head.
     """
     try:
         if data.startswith(b"\x89PNG"):

@@ -177,10 +177,7 @@ def _decoded(data: bytes, path: Path) -> NDArray[Any]:
 
 
 def compression_of(path: Path, channel: Channel | None = None) -> Compression:
-    """Estimate the errors by compression of a channel of a picture file; none for one lossless or unreadable.
-
-    Not at all for a file that is lossless or cannot be read.
-    """
+    """Estimate the errors by compression of a channel of a picture file; none for one lossless or unreadable."""
     check_file(path)
     try:
         with path.open("rb") as file:

@@ -50,7 +50,7 @@ def standing_out(picture: Picture) -> NDArray[np.int64]:
 
 
 def hot_pixels(pictures: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
-    """Find the hot pixels, (K,) flat indices: those that stand out, as listed for each, in nearly all `pictures`.
+    """Find the hot pixels, (K,) flat indices: those in nearly all of `pictures`, each a list of what stands out.
 
     None are found in too few pictures.
     """

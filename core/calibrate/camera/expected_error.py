@@ -68,7 +68,7 @@ class ResidualField:
 def expected_error(
     calibration: CameraCalibration, depth_mm: float | None = None, grid: tuple[int, int] = GRID
 ) -> ExpectedError:
-    """Compute the standard uncertainty of points at depth `depth_mm` that the camera's covariance causes.
+    """Compute the standard uncertainty of points by the camera's covariance at `depth_mm` (None: mid-depth of corners).
 
     The covariance's cameras are compared in the work volume: the pixels that corners lie around, between the nearest
     and the farthest corner. There a small rigid motion of the frame, fitted by least squares, takes out of every

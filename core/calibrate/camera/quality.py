@@ -89,7 +89,7 @@ def rms_and_mean(errors: Array) -> tuple[float, float]:
 
 
 def cross_validation_mm(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> float:
-    """Compute the RMS distance in mm between points by two cameras, one solved from even views, one from odd ones.
+    """Compute the RMS distance in mm, in the work volume, between points by cameras of odd and of even views.
 
     The volume is what the corners' part of the picture sees between the nearest and the farthest corner. With half
     the views each, the two differ by about twice the standard uncertainty of the camera from all. NaN with fewer

@@ -164,7 +164,7 @@ class Observations:
     def observed(self, state: State, trust: ObservationWeights) -> tuple[Array, Array, Array]:
         """Compute the residuals (M,) of target points and stripes in standard deviations, and their derivatives.
 
-        And their derivatives by the common unknowns (M, C) and by those of the pose each is of (M, 6).
+        These are by the common unknowns (M, C) and by those of the pose each is of (M, 6).
         """
         unknowns = state.planes.jacobian.shape[1]
         width = unknowns + self.bows + PARAMETERS

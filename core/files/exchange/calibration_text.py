@@ -30,7 +30,7 @@ _MOST_EVENTS = 200_000
 def read_fields(path: Path) -> Mapping[str, Any]:
     """Read a calibration file in YAML or JSON as a table of fields; InputError if it is neither.
 
-    Their values are texts, numbers, lists, or tables that hold `data`.
+    The fields' values are texts, numbers, lists, or tables that hold `data`.
 
     Raises
     ------

@@ -131,7 +131,7 @@ def store_planes(
 ) -> str:
     """Add a calibration of the light planes and its poses to the project's history as the newest one; returns its id.
 
-    Returns its id; one that is there already becomes the newest.
+    One that is there already becomes the newest.
 
     Raises
     ------

@@ -54,7 +54,7 @@ def is_further(path: Path) -> bool:
 def pictures_in(folder: Path | None) -> tuple[Path, ...]:
     """List the pictures in a folder by name, without further exposures; () if there is no such folder.
 
-    Nothing if there is no such folder, InputError if it cannot be listed.
+    InputError if it cannot be listed.
     """
     return tuple(path for path in _all_in(folder) if not is_further(path))
 

@@ -64,9 +64,9 @@ class PoseEstimate:
 def estimate_pose(view: TargetView, camera: Camera) -> PoseEstimate:
     """Estimate the target's pose in the camera frame from the points of `view`; TargetNotFound if none explains them.
 
-    The pixel residuals are those of the full camera model. Both solutions that a plane allows (IPPE) are refined; the
-    better one is the pose, and whether the view tells them apart is reported. With twelve points or more outliers lose
-    their weight (Tukey).
+    By weighted least squares over the pixel residuals of the full camera model. Both solutions that a plane allows
+    (IPPE) are refined; the better one is the pose, and whether the view tells them apart is reported. With twelve
+    points or more outliers lose their weight (Tukey).
 
     Raises
     ------

@@ -60,7 +60,7 @@ class RoomEffects:
     def added(self, index: int, shape: tuple[int, ...], readout_s: float, rng: np.random.Generator) -> Map | None:
         """Compute the change of the room's light in frame `index` (−1: the reference) as a share of it; None if none.
 
-        (h or 1, w or 1).
+        Its shape is (h or 1, w or 1).
         """
         factor = np.ones((1, 1))
         if self.flicker:

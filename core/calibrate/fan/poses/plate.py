@@ -70,7 +70,7 @@ class Plate:
         return np.asarray(((places > self._low - reach) & (places < self._high + reach)).all(axis=1))
 
     def outside(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Flag the pixels (H, W) that do not show the plate, or lie within some px of its edge."""
+        """Flag the pixels (H, W) of a picture that show other things than the plate, but none within some px of it."""
         rows, columns = (size // SPACING + 2 for size in shape)
         places = SPACING * np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
         within = self.contains(places.astype(np.float64), ROOM).reshape(rows, columns).astype(np.uint8)

@@ -76,7 +76,7 @@ def ridge_at(
     v: float,
     detector: Detector,
 ) -> tuple[float, float, float, float]:
-    """Find the point of a line nearest to (u, v): where the light's second derivative across it is strongest.
+    """Find the crest of the line at (u, v), radius + 1 px inside the picture: second derivative, normal, distance.
 
     Parameters
     ----------
