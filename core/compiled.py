@@ -62,9 +62,6 @@ def compiled(*, fastmath: bool | set[str] = False, inline: bool = False) -> Call
 
     With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows. With `inline` it becomes part of
     the compiled functions that call it, and Python can call it too.
-
-    With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows. With `inline` it becomes part of
-    the compiled functions that call it, and Python can call it too.
     """
     return _declared(fastmath, forceinline=inline)
 

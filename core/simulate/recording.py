@@ -135,7 +135,7 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 
 
 def scenario_rig(scenario: Scenario) -> Rig:
-    """Make the true camera, fan and optics that a scenario describes."""
+    """Make the rig (camera, fan and optics) that a scenario describes, as it is when calibrated."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
     rig = paper_rig(
         scenario.scale,

@@ -109,7 +109,7 @@ class ScanStage:
         return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
-        """Render frame `index`, lit by one of the hand-held laser's `sheets`, or by several one after another."""
+        """Render frame `index`, lit by one of the hand-held laser's `sheets`, or by several during its exposure."""
         rng = generator(self.seed, "frame", index)
         return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor, self._hidden_by_hand(sheets))
 

@@ -67,7 +67,7 @@ class Rules:
 
 
 def read_rules(folder: Path) -> Rules:
-    """Read the people and rules of a project; InputError if their file is damaged."""
+    """Read the people and rules of a project, empty ones without a file; InputError if the file is damaged."""
     path = folder / PEOPLE
     return checked_json(Rules, read_json(path), path) if path.exists() else Rules()
 

@@ -127,7 +127,7 @@ class FolderLog:
 
     @classmethod
     def of(cls, folder: Path | None) -> FolderLog:
-        """Read the log of the recording in `folder`; empty where there is no log, or `folder` is None."""
+        """Read the log of the recording in `folder`; empty if there is none, and with a note if it cannot be read."""
         try:
             return cls() if folder is None else cls(read_log(folder))
         except InputError as error:
