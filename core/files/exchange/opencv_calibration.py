@@ -53,7 +53,7 @@ def write_opencv(path: Path, calibration: CameraCalibration, at: datetime) -> No
 
 
 def read_opencv(path: Path) -> CameraCalibration:
-    """Read a camera's calibration from OpenCV's YAML or JSON (FileStorage); InputError if it is none.
+    """Read a camera's calibration from OpenCV's YAML or JSON (FileStorage); InputError if it holds none.
 
     Raises
     ------

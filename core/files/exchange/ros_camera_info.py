@@ -57,7 +57,7 @@ def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
 
 
 def read_camera_info(path: Path) -> CameraCalibration:
-    """Read a camera's calibration from ROS's camera_info YAML file; InputError if it is none.
+    """Read a camera's calibration from ROS's camera_info YAML file; InputError if it holds none.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class _GeometryFile(ResultFile):
 
 
 def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry:
-    """Read the features of `inspection`, a file inspection.json, as geometry to be drawn, in `frame`.
+    """Read the features in `inspection`, inspection.json, as geometry to draw, in `frame`; InputError if that fails.
 
     Parameters
     ----------

@@ -294,7 +294,7 @@ class RigHistory:
         )
 
     def added(self, check: PastCheck) -> RigHistory:
-        """Return the history with another check added."""
+        """Return the history with `check` added, in place of an earlier one of the same pictures and object."""
         others = (one for one in self.checks if one.looked_at != check.looked_at)
         return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
 

@@ -40,7 +40,7 @@ def target_plane_changes(pose: Pose) -> tuple[Array, Array]:
 
 
 def target_plane_covariance(view: TargetView, pose: Pose, camera: Camera) -> Array:
-    """Compute the covariance (3, 3) in 1/mm² of τ of the target's plane from that of its points."""
+    """Compute the covariance (3, 3) in 1/mm² of the target's plane τ, τ·X = 1, from that of the target's points."""
     _, _, by_pose = reprojection.linearise(camera, pose, view.points)
     scaled = view.whitened(by_pose)
     by_step = target_plane_changes(pose)[1]
