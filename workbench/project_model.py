@@ -130,22 +130,22 @@ class ProjectModel(QObject):
 
     @property
     def project(self) -> Project:
-        """Present project."""
+        """Project that is open, as it is now; an empty one if none is open."""
         return self._file.project
 
     @property
     def results(self) -> Mapping[str, Done]:
-        """Results by step."""
+        """Result of each step that was done, by the step's name."""
         return self._file.results
 
     @property
     def file(self) -> ProjectFile:
-        """Project and results, as they would be saved."""
+        """Project and results together, as they would be saved now."""
         return self._file
 
     @property
     def states(self) -> Mapping[str, StepState]:
-        """State of each step, by its name; computed once for project and language, as every page reads it often."""
+        """State of each step on the rail, by the step's name."""
         file, language = self._states_of
         if file is not self._file or language != language_name():
             self._states, self._states_of = step_states(self.project, self.results), (self._file, language_name())
@@ -158,21 +158,21 @@ class ProjectModel(QObject):
 
     @property
     def is_recording(self) -> bool:
-        """Whether anything is being recorded for the project."""
+        """Whether a live recording for the project is running."""
         return bool(self._recording)
 
     @property
     def is_modified(self) -> bool:
-        """Whether project.json differs."""
+        """Whether the project differs from its project.json, so that it has to be saved."""
         return self.is_open and self._file != self._saved
 
     @property
     def is_read_only(self) -> bool:
-        """Whether the open project cannot be changed on the disk: it is open elsewhere, gone, or write-protected."""
+        """Whether the open project cannot be changed on the disk: open elsewhere, gone, or write-protected."""
         return self.folder is not None and (not can_be_saved(self.folder) or self.why_read_only() is not None)
 
     def why_read_only(self) -> InputError | None:
-        """Give the reason why the open project may not be changed on the disk; None where it may, as far as known."""
+        """Return the error that says why the open project cannot be changed on the disk; None if it can."""
         if self.folder is None:
             return None
         if self._access is Access.READ_ONLY:
@@ -214,7 +214,7 @@ class ProjectModel(QObject):
         version: ProjectFile | None = None,
         access: Access = Access.ALONE,
     ) -> None:
-        """Open a project folder; with `recover`, its autosaved state; with `version`, that state, to be saved.
+        """Open the project in a folder as saved, or, with `recover`, as autosaved, or as in `version`.
 
         Raises
         ------
@@ -237,13 +237,13 @@ class ProjectModel(QObject):
             remove_autosave(folder)
 
     def close(self) -> None:
-        """Close the project; save first if it is to be kept."""
+        """Close the project, which is not saved."""
         self._autosave.stop()
         self._save.stop()
         self._take(None, ProjectFile(new_project("")), saved=None, access=Access.READ_ONLY)
 
     def edit(self, label: str, after: Project, merge_key: str = "") -> None:
-        """Replace the project by `after`, undoable under the name `label`; nothing happens if it is equal.
+        """Replace the project by `after` as one undoable edit called `label`; an equal project is no edit.
 
         Nor if whoever has signed in may not change it, which is told, or a reason is wanted and none is given.
         """
@@ -263,7 +263,7 @@ class ProjectModel(QObject):
             self.save_by_itself()  # the reason is nowhere else
 
     def sign_in(self, name: str, pin: str) -> None:
-        """Sign a person in, who changes the project from now on; InputError if name and PIN do not match.
+        """Sign a person in as the author of all further changes; InputError if name and PIN do not match.
 
         What was done before cannot be undone by somebody who may not.
         """
@@ -271,21 +271,21 @@ class ProjectModel(QObject):
         self.undo_stack.clear()
 
     def stay_signed_in(self, person: Person | None) -> None:
-        """Keep the person of the last project signed in, if this one has the same person with the same PIN."""
+        """Keep `person`, of the last project, signed in if this project has the same person and PIN."""
         if person is not None and person in self.rules.people:
             self.signed_in = person
 
     def sign_out(self) -> None:
-        """Sign out: what follows is recorded without a person's name."""
+        """Sign the person out; further changes are recorded without a name."""
         self.signed_in = None
         self.undo_stack.clear()
 
     def record(self, step: str, done: Done | None) -> None:
-        """Record the result of a step (or that it is gone)."""
+        """Record the result of a step; None records that there is none any more."""
         self.record_all({step: done})
 
     def record_all(self, done: Mapping[str, Done | None]) -> None:
-        """Record the results of several steps (or that they are gone) at once."""
+        """Record the results of several steps at once; None for each that has none any more."""
         kept = {name: result for name, result in self.results.items() if name not in done}
         new = {name: result for name, result in done.items() if result is not None}
         self._file = replace(self._file, results={**kept, **new})
@@ -296,17 +296,17 @@ class ProjectModel(QObject):
         self.results_changed.emit()
 
     def recording_begins(self, who: QObject) -> None:
-        """Register `who` as recording, until `recording_ends`."""
+        """Register the object `who` as recording for the project, until `recording_ends`."""
         self._recording.add(who)
 
     def recording_ends(self, who: QObject) -> None:
-        """Unregister `who`: its recording is in the project."""
+        """Unregister the object `who`, as its recording is in the project now."""
         self._recording.discard(who)
         if not self._recording:
             self.recordings_over.emit()
 
     def save(self) -> None:
-        """Write project.json; the last five versions are kept.
+        """Write project.json, and keep the five versions before it as backups.
 
         Raises
         ------
@@ -317,12 +317,12 @@ class ProjectModel(QObject):
         self.undo_stack.setClean()
 
     def save_by_itself(self) -> None:
-        """Save automatically; an error is shown once."""
+        """Save the project automatically; an error is shown once, not at each attempt."""
         if self.is_modified:
             self._tell_once(lambda: self._write(keep_s=KEEP_S))
 
     def autosave(self) -> None:
-        """Write the state beside project.json, for recovery after a crash; undone edits are not recovered."""
+        """Write the unsaved project beside project.json, for recovery after a crash."""
         self._autosave.stop()
         self._tell_once(self._write_autosave)
 

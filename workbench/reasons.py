@@ -4,10 +4,10 @@ from __future__ import annotations
 
 
 def why(when: object, sentence: str) -> str:
-    """Return a sentence where something is so, else ""."""
+    """Return `sentence` if `when` is true, else ""."""
     return sentence if when else ""
 
 
 def first(*reasons: str) -> str:
-    """Return the first reason that there is, or ""."""
+    """Return the first reason that is not ""; "" if all are."""
     return next(filter(None, reasons), "")

@@ -29,11 +29,11 @@ class Refresh(QObject):
         self._timer.timeout.connect(self._due)
 
     def soon(self, *_: Any) -> None:
-        """Request a refresh."""
+        """Request that `show` is called once in the next turn of the event loop."""
         self._timer.start()
 
     def at_once(self) -> None:
-        """Do the refresh that is waiting now, if there is one; not to be called within a signal."""
+        """Call `show` now if it was requested; not to be called within a signal."""
         if self._timer.isActive():
             self._timer.stop()
             self._show()

@@ -26,22 +26,22 @@ class AppSettings(QObject):
 
     @property
     def recent(self) -> list[Path]:
-        """Projects opened last, the newest first; those that are gone are left out."""
+        """Folders of the projects opened last, the newest first, without those that are gone."""
         stored = self._store.value("recent", [])
         paths = [stored] if isinstance(stored, str) else stored if isinstance(stored, list) else []
         return [path for path in map(Path, paths) if (path / "project.json").exists()]
 
     def remember(self, project: Path) -> None:
-        """Add a project at the top of the recent ones."""
+        """Put a project's folder at the top of the list of recent projects."""
         self._keep_recent([project, *(path for path in self.recent if path != project)])
 
     def forget(self, project: Path) -> None:
-        """Remove a project from the recent ones; the project itself is not changed."""
+        """Remove a project's folder from the list of recent projects; the project stays."""
         self._keep_recent([path for path in self.recent if path != project])
 
     @property
     def theme(self) -> str:
-        """Name of the theme, one of THEMES."""
+        """Name of the chosen theme, one of THEMES."""
         theme = str(self._store.value("theme", "system"))
         return theme if theme in THEMES else "system"
 
@@ -52,7 +52,7 @@ class AppSettings(QObject):
 
     @property
     def language(self) -> str:
-        """Name of the window's language; "": the system's."""
+        """Name of the language chosen for the window; "" for the system's."""
         return str(self._store.value("language", ""))
 
     @language.setter
@@ -62,7 +62,7 @@ class AppSettings(QObject):
 
     @property
     def part_frame(self) -> bool:
-        """Whether 3D views show a part in its own frame, where that is known, rather than in the camera's."""
+        """Whether 3D views use the part's own frame, where it is known, instead of the camera's."""
         return self.text("frame of 3D views", "part") == "part"
 
     @part_frame.setter
@@ -72,7 +72,7 @@ class AppSettings(QObject):
 
     @property
     def callouts(self) -> bool:
-        """Whether results are shown at their places on the surface."""
+        """Whether results are shown as callouts at their places on the surface."""
         return self.text("callouts", "shown") == "shown"
 
     @callouts.setter
@@ -81,7 +81,7 @@ class AppSettings(QObject):
 
     @property
     def nominal_shown(self) -> bool:
-        """Whether the nominal surface is shown over the part where a deviation from it is chosen."""
+        """Whether the nominal surface is shown over the part while a deviation from it is chosen."""
         return self.text("nominal", "hidden") == "shown"
 
     @nominal_shown.setter
@@ -90,7 +90,7 @@ class AppSettings(QObject):
 
     @property
     def projects_folder(self) -> Path:
-        """Folder of new projects."""
+        """Folder in which new projects are made."""
         return Path(str(self._store.value("projects_folder", Path.home() / "Trisect projects")))
 
     @projects_folder.setter
@@ -98,29 +98,29 @@ class AppSettings(QObject):
         self._store.setValue("projects_folder", str(folder))
 
     def text(self, name: str, default: str) -> str:
-        """Return any other setting, by its name."""
+        """Return the stored text called `name`; `default` if none is stored."""
         return str(self._store.value(name, default))
 
     def keep_text(self, name: str, value: str) -> None:
-        """Store a setting by its name."""
+        """Store a text called `name`."""
         self._store.setValue(name, value)
 
     def layout(self, name: str) -> QByteArray | None:
-        """Return a window's or splitter's saved geometry."""
+        """Return the stored geometry of the window or splitter called `name`; None if none is stored."""
         value = self._store.value(f"layout/{name}")
         return value if isinstance(value, QByteArray) else None
 
     def keep_layout(self, name: str, state: QByteArray) -> None:
-        """Save a window's or splitter's geometry."""
+        """Store the geometry of the window or splitter called `name`."""
         self._store.setValue(f"layout/{name}", state)
 
     def stage_seconds(self, job: str) -> dict[str, float]:
-        """Return the duration of each stage of this job last time, in s: the estimate for the next time."""
+        """Return how long each stage of this job took last time in s, by stage, to estimate the time left."""
         stored = self._store.value(f"stages/{job}", {})
         return {str(k): float(v) for k, v in stored.items()} if isinstance(stored, dict) else {}
 
     def keep_stage_seconds(self, job: str, seconds: dict[str, float]) -> None:
-        """Store the durations of the stages of a job; of those left out, the earlier ones stay."""
+        """Store how long each stage of a job took in s, by stage; other stages keep their values."""
         self._store.setValue(f"stages/{job}", {**self.stage_seconds(job), **seconds})
 
     def _keep_recent(self, paths: list[Path]) -> None:

@@ -50,7 +50,7 @@ class StepState:
 
 
 def step_states(project: Project, results: Mapping[str, Done]) -> dict[str, StepState]:
-    """Derive the state of every step, by its name in ORDER."""
+    """Derive the state of each step, by its name, from the project and from what each result was made of."""
     states: dict[str, StepState] = {}
     for step in ORDER:
         states[step] = _project_state(project) if step == "project" else _state(step, project, results, states)

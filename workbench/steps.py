@@ -40,7 +40,7 @@ class Step:
 
     @property
     def title(self) -> str:
-        """Displayed name of the step."""
+        """Name of the step in the window's language."""
         return TITLES[self.name]
 
 

@@ -63,7 +63,7 @@ SOON_MS = 1
 
 
 def shades() -> Shades:
-    """Return the colours of the theme in use."""
+    """Return the colours of the theme that is in use."""
     return DARK if is_dark() else LIGHT
 
 
@@ -73,13 +73,13 @@ def is_dark() -> bool:
 
 
 def apply_theme(app: QApplication, name: str) -> None:
-    """Style the application: "light", "dark", or as the system is set for "system"."""
+    """Apply a theme to the whole application: "light", "dark", or "system" for the system's choice."""
     apply_colours(app, name)
     apply_sheet(app)
 
 
 def apply_colours(app: QApplication, name: str) -> None:
-    """Set style and palette of a theme, in which icons are drawn."""
+    """Set the style and the palette of a theme; icons are drawn in its colours from then on."""
     if app.property("dressed") != "fusion":  # under a style sheet the style no longer tells its name
         with _nothing_collected():
             app.setStyle("Fusion")
@@ -95,7 +95,7 @@ def apply_colours(app: QApplication, name: str) -> None:
 
 
 def apply_sheet(app: QApplication) -> None:
-    """Set the style sheet, if it is not set; else its rules take the palette's colours."""
+    """Set the application's style sheet, or, if it is set, let its rules take the palette's colours."""
     if not app.styleSheet():
         folder = files("resources")
         check = Path(str(folder / "icons" / "check.svg")).as_posix()
@@ -107,7 +107,7 @@ def apply_sheet(app: QApplication) -> None:
 
 
 def take_sheet_off(app: QApplication) -> None:
-    """Remove the style sheet, until `apply_sheet`."""
+    """Remove the application's style sheet, until `apply_sheet` is called."""
     with _nothing_collected():
         app.setStyleSheet("")
 
@@ -130,7 +130,7 @@ def _nothing_collected() -> Iterator[None]:
 
 @lru_cache(maxsize=512)
 def icon(name: str, *, colour: str = "") -> QIcon:
-    """Make an icon by its qtawesome name, in the text colour of the theme or in `colour` (a field of Shades).
+    """Make an icon by its qtawesome name, in the theme's text colour or in the field `colour` of Shades.
 
     It is drawn in the colours of the theme in use whenever it is drawn: nobody need set it anew when that changes.
     """
@@ -205,7 +205,7 @@ def _palette_of_fields(s: Shades) -> QPalette:
 
 
 def polish_again(app: QApplication) -> None:
-    """Update the colours of all widgets from the palette: visible ones at once, the others little by little."""
+    """Update the colours of all widgets from the palette: visible ones now, the others step by step."""
     hidden = []
     with _nothing_collected():
         widgets = app.allWidgets()
@@ -220,7 +220,7 @@ def polish_again(app: QApplication) -> None:
 
 
 def is_polishing(app: QApplication) -> bool:
-    """Whether invisible widgets still have the colours of before."""
+    """Whether some widgets that are not visible still have the colours of the theme before."""
     return _later(app).isActive()
 
 

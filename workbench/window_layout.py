@@ -21,13 +21,13 @@ FRAMED_MS = 500
 
 
 def name_of(screen: QScreen) -> str:
-    """Name a screen by what a layout depends on: its size in the window's own pixels, and its scale."""
+    """Make a name for a screen from what a layout depends on: its size in logical pixels and its scale."""
     size = screen.size()
     return f"{size.width()}x{size.height()} at {screen.devicePixelRatio():g}"
 
 
 def keep_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
-    """Store the window's place, how its pages are divided and what is folded, for the screen it is on."""
+    """Store the window's geometry, splitters and folded panels for the screen it is on."""
     screen = name_of(window.screen())
     settings.keep_text(LAST_SCREEN, screen)
     settings.keep_layout(f"{screen}/window", window.saveGeometry())
@@ -42,7 +42,7 @@ def _keep_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSetting
 
 
 def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
-    """Restore the window as it was on its last screen; on the default one where that screen is gone."""
+    """Restore the window's layout on its last screen, or on the default screen if that one is gone."""
     screens = {name_of(screen): screen for screen in QGuiApplication.screens()}
     name = settings.text(LAST_SCREEN, "")
     if name not in screens:
@@ -54,7 +54,7 @@ def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: App
 
 
 def put_on_screen(window: QWidget, room: QRect) -> None:
-    """Move a window, and shrink it where needed, so that all of its frame is within the room.
+    """Move a window, and shrink it if needed, so that its whole frame is within the rectangle `room`.
 
     What the frame takes is not known until the window system has made it: until then a title bar of TITLE_BAR pixels is
     reckoned with.
@@ -98,11 +98,11 @@ class LayoutOfScreen:
         self._framed.timeout.connect(lambda: put_on_screen(window, window.screen().availableGeometry()))
 
     def rest(self) -> None:
-        """Stop following: the window is hidden and has no frame any more."""
+        """Stop following the window from screen to screen, as it is hidden."""
         self._framed.stop()
 
     def follow(self) -> None:
-        """Start to follow the window from screen to screen: it is shown."""
+        """Start following the window from screen to screen, as it is shown."""
         handle = self._window.windowHandle()
         if not self._screen and handle is not None:
             self._screen = name_of(self._window.screen())
@@ -117,7 +117,7 @@ class LayoutOfScreen:
 
 
 def inside(place: QRect, room: QRect) -> QRect:
-    """Move a rectangle into the room, to the nearest place, and shrink it where needed."""
+    """Move the rectangle `place` to the nearest place within `room`, shrunk if needed, and return it."""
     width, height = min(place.width(), room.width()), min(place.height(), room.height())
     left = min(max(place.left(), room.left()), room.left() + room.width() - width)
     top = min(max(place.top(), room.top()), room.top() + room.height() - height)

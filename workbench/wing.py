@@ -82,10 +82,10 @@ class RepeatsPart(Protocol):
     """A widget below the statistics of the repeats."""
 
     def refresh(self) -> None:
-        """Show what the presenter says now."""
+        """Show what the part's presenter says now, below the statistics of the repeats."""
 
     def facts(self) -> Sequence[Fact]:
-        """What it tells, to be copied with the repeats."""
+        """Return the facts that this part shows, to be copied together with the repeats."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class WindowWing:
 
 @cache
 def window_wings() -> Found[WindowWing]:
-    """All wings of the window, loaded once."""
+    """Load all wings of the window; further calls return the first result."""
     return found_wings(WindowWing, chain(by_folders(OURS, "WINDOW_WING"), by_entry_points(WINDOW_GROUP)))
 
 
@@ -128,7 +128,7 @@ def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, C
 
 
 def inspect_tabs(bench: Bench, presenter: QObject) -> Sequence[tuple[InspectTab, Any]]:
-    """The tabs of the wings for the page Inspect, each with its widget; a notice tells of those that cannot be made."""
+    """Make the wings' tabs for the page Inspect, each with its widget; a notice tells of those that fail."""
     tabs = ((one, one.opens, one.title, origin) for wing, origin in window_wings().wings for one in wing.tabs)
     return list(_made(bench, tabs, presenter, kind=QWidget))
 

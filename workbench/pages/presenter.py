@@ -32,21 +32,21 @@ class StepPresenter(QObject):
 
     @property
     def project(self) -> Project:
-        """Present project."""
+        """Project that is open, as it is now."""
         return self.model.project
 
     @property
     def state(self) -> StepState:
-        """State of this step."""
+        """State of this page's step, as the rail shows it."""
         return self.model.states[self.step]
 
     def blocker(self) -> str:
-        """Say in one sentence what is missing before Next makes sense, or ""."""
+        """Return a sentence on what is missing before Next makes sense; "" if nothing is."""
         return ""
 
     @property
     def waits_to_be_accepted(self) -> bool:
-        """Whether there is a calibration that can be accepted."""
+        """Whether a calibration is shown that can be accepted now."""
         return False
 
     @property
@@ -55,16 +55,16 @@ class StepPresenter(QObject):
         return False
 
     def opened(self) -> None:
-        """Forget the last project, and load what this page needs of the opened one (or none)."""
+        """Drop what belongs to the last project, and load what the page needs of the one now open."""
 
     def project_changed(self, before: Project, after: Project) -> None:
-        """Follow an edit of the project, or its undo."""
+        """React to an edit of the project, or its undo, by which `before` became `after`."""
 
     def entered(self) -> None:
-        """Follow that the page is shown."""
+        """React to the page being shown."""
 
     def left(self) -> None:
-        """Follow that the page is hidden."""
+        """React to the page being hidden."""
 
     def _opened(self) -> None:
         self.opened()

@@ -13,7 +13,7 @@ from workbench.views.forms.form import SettingsForm
 
 
 def add_settings(form: SettingsForm, step: str) -> None:
-    """Add a field for each setting of a step that has a title; for those of a stripe, also whether it is found."""
+    """Add a field for each setting of a step that has a title to a form; a stripe also gets "automatic"."""
     for row in settings_of(step):
         if isinstance(row.setting.kind, Values) and row.setting.title:
             form.add_check(AUTOMATIC, tr(row.setting.title), tr(row.setting.help))
@@ -23,20 +23,20 @@ def add_settings(form: SettingsForm, step: str) -> None:
 
 
 def add_rig_settings(form: SettingsForm, table: str) -> None:
-    """Add a field for each setting of a table of rig.toml."""
+    """Add a field for each setting in the table `table` of rig.toml to a form."""
     for key, one in RIG[table].items():
         add_setting(form, key, one)
 
 
 def set_stripe_editable(form: SettingsForm, automatic: bool) -> None:
-    """Enable the fields of width and contrast where they are given."""
+    """Enable the fields for a stripe's width and contrast, unless these are found automatically."""
     why = tr("Found automatically; take away the tick above to give it.")
     for key in ("width_px", "contrast"):
         form.set_editable(key, not automatic, why)
 
 
 def add_setting(form: SettingsForm, key: str, one: Setting) -> None:
-    """Add the field of one setting."""
+    """Add the field for one setting to a form."""
     title, help = capital(tr(one.title)), tr(one.help)
     if isinstance(one.kind, Number):
         kind = one.kind

@@ -15,13 +15,13 @@ AUTOMATIC = "automatic"
 
 
 def fields_of(step: str) -> dict[str, Row]:
-    """List the settings of a step that have a field, by its key; width and contrast of the stripes separately."""
+    """List the settings of a step that have a field, by key; a stripe's width and contrast have one each."""
     within = (one for row in settings_of(step) for one in rows_within(row))
     return {one.key: one for one in within if one.setting.title}
 
 
 def values_of(step: str, options: Options, found: StripeSettings | None = None) -> dict[str, Any]:
-    """Return the values of the fields; width and contrast as `found` where they are found automatically."""
+    """Convert a step's options to the fields of its form; `found` gives width and contrast if automatic."""
     values: dict[str, Any] = {}
     for row in settings_of(step):
         if row.setting.kind is STRIPE:
@@ -33,7 +33,7 @@ def values_of(step: str, options: Options, found: StripeSettings | None = None) 
 
 
 def changed_options(step: str, options: Options, found: StripeSettings | None, field: str, value: Any) -> Options:
-    """Change one field of the options; InputError or ValueError if that is impossible."""
+    """Return the options with one field of a step's form changed; InputError or ValueError if impossible."""
     for row in settings_of(step):
         if row.setting.kind is STRIPE and field in (AUTOMATIC, *STRIPE.settings):
             stripe = _shown(row.value(options), found)

@@ -17,13 +17,13 @@ _RECORDED = re.compile(rf"(^|/){_RECORDINGS}/[a-z]+-\d{{8}}-\d{{6}}([ -]\d+)?$")
 
 
 def folder_of(model: ProjectModel, step: Step) -> Path | None:
-    """Return the folder of a step's pictures, or None if there is none yet."""
+    """Return the folder of a step's pictures; None if none is chosen."""
     stored = getattr(model.project.sources, step)
     return source_folder(model.folder, stored) if stored and model.folder is not None else None
 
 
 def put_source(model: ProjectModel, step: Step, folder: Path, label: str, *, keep_left_out: bool = False) -> None:
-    """Make `folder` the source of a step's pictures; undoable.
+    """Make `folder` the source of a step's pictures, as the edit `label`; undoable.
 
     What was left out by hand of the last one is let in, unless the pictures are the same and some more.
     """
@@ -38,12 +38,12 @@ def put_source(model: ProjectModel, step: Step, folder: Path, label: str, *, kee
 
 
 def recording_folder(project: Path, step: Step) -> Path:
-    """Make a new path for a live recording, named by the step and the time."""
+    """Make the path of a new folder for a live recording, named by step and time."""
     return free_folder(project / _RECORDINGS, f"{step}-{datetime.now():%Y%m%d-%H%M%S}")
 
 
 def scan_begins_live(model: ProjectModel) -> bool:
-    """Whether the scan's page begins with the live source: there is no scan, and no pictures of other programs.
+    """Whether the scan page starts with the live source, as the project has neither a scan nor other pictures.
 
     The next part of a series has no scan, but the pictures of its calibrations: it is recorded as these were.
     """

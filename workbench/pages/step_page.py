@@ -41,7 +41,7 @@ class StepPage(QWidget):
 
     @property
     def takes_the_window(self) -> bool:
-        """Whether the present work uses the whole window: nothing else can be done meanwhile."""
+        """Whether the page needs the whole window now, so that no other page can be chosen."""
         return False
 
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
@@ -68,14 +68,14 @@ class StepPage(QWidget):
         self.presenter.model.opened.connect(self.scroll_to_top)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show what the page's presenter says now."""
 
     def scroll_to_top(self) -> None:
-        """Scroll the side to its top: another project is open, or something else is edited there."""
+        """Scroll the panels at the side to the top."""
         self.scrolled.verticalScrollBar().setValue(0)
 
     def enter(self, editor: QWidget | None) -> None:
-        """Show a field at the side and give it the focus; None: nothing."""
+        """Scroll the field `editor` at the side into view and give it the focus; None does nothing."""
         if editor is None:
             return
         self.refreshing.at_once()  # or what it shows anew would take the side back to its top
@@ -84,7 +84,7 @@ class StepPage(QWidget):
         editor.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False, kept: str = "") -> QCollapsible:
-        """Add a panel at the side that can be folded; under the name `kept` its folding is remembered."""
+        """Add a panel with a title at the side, which can be folded; with `kept`, its folding is remembered."""
         panel = QCollapsible(title)
         panel.setDuration(0)
         outside, inside = panel.layout(), panel.content().layout()
@@ -109,15 +109,15 @@ class StepPage(QWidget):
         return panel
 
     def add_to_side(self, widget: QWidget) -> None:
-        """Add a widget at the side that is always visible, below what was added before."""
+        """Add a widget, which cannot be folded, at the bottom of the side."""
         self.side.insertWidget(self.side.count() - 1, widget)
 
     def pin_to_side(self, widget: QWidget) -> None:
-        """Add a widget at the top of the side that stays in sight whatever is scrolled below it."""
+        """Add a widget at the top of the side, which stays visible while the rest is scrolled."""
         self.pinned.addWidget(widget)
 
     def add_list(self, title: str, widget: QWidget) -> QCollapsible:
-        """Add a panel with a list that grows with the page."""
+        """Add a panel with a list at the side; the list's height grows with the page."""
         self._lists.append(widget)
         self._fit_lists()
         return self.add_panel(title, widget, kept="list")
@@ -135,7 +135,7 @@ class StepPage(QWidget):
             self.refreshing.soon()  # icons and colours are the theme's
 
     def prepare(self) -> None:
-        """Update the page, which is about to be shown."""
+        """Bring the page up to date before it is shown."""
         if self._stale:
             self._stale = False
             self.refresh()

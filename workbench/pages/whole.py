@@ -24,7 +24,7 @@ EDIT = "whole job"
 
 
 def why_not_measure_all(*, running: bool, live: bool, left: frozenset[str], scan_chosen: bool, read_only: bool) -> str:
-    """Give the reason why not everything can be measured now; `left` are the steps that are not up to date.
+    """Return the reason why all steps cannot be done now; "" if they can. `left`: steps not up to date.
 
     `running`: it is being done, or waits for its turn. `live`: a live source is on, or what it recorded is still being
     put into the project. `scan_chosen`: pictures of a scan are. `read_only`: nothing can be written into the project.
@@ -60,12 +60,12 @@ class MeasuringAll(QObject):
 
     @property
     def running(self) -> bool:
-        """Whether it is running, or waits for its turn."""
+        """Whether the job that does all steps runs, or waits for the process."""
         return self._task is not None
 
     @property
     def cannot_start(self) -> str:
-        """Reason why it cannot be started now, or ""."""
+        """Reason why the job that does all steps cannot be started now; "" if it can."""
         model = self._model
         return why_not_measure_all(
             running=self.running,
@@ -76,7 +76,7 @@ class MeasuringAll(QObject):
         )
 
     def start(self) -> None:
-        """Start the job."""
+        """Start to do every step that is not up to date, to the report, in the background."""
         folder = self._model.folder
         if folder is None or self.cannot_start:
             return
@@ -97,7 +97,7 @@ class MeasuringAll(QObject):
         self.changed.emit()
 
     def opened(self) -> None:
-        """Stop: another project is open."""
+        """Stop the job that does all steps, as another project is open."""
         self.why_stopped = ""
         if self._task is not None:
             self._task.cancel()

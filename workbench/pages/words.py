@@ -15,47 +15,47 @@ from workbench.views.lists.value_rows import ValueRow, ValueRows
 
 
 def length(value: float, unit: str, digits: int = 3) -> str:
-    """Write a length in px or mm; a dash for NaN."""
+    """Write a length with its unit, "px" or "mm", to `digits` decimals; a dash for NaN."""
     return "–" if math.isnan(value) else f"{number(value, f'.{digits}f')} {unit}"
 
 
 def px(value: float) -> str:
-    """Write a length in pixels."""
+    """Write a length in pixels with its unit; a dash for NaN."""
     return length(value, "px")
 
 
 def mm(value: float, digits: int = 3) -> str:
-    """Write a length in millimetres."""
+    """Write a length in millimetres with its unit, to `digits` decimals; a dash for NaN."""
     return length(value, "mm", digits)
 
 
 def sigma(value_mm: float) -> str:
-    """Write a standard uncertainty in millimetres, to two digits."""
+    """Write a standard uncertainty in millimetres, to two significant digits."""
     return mm(value_mm, max(decimals_of(value_mm), 0))
 
 
 def degrees(value: float, digits: int = 3) -> str:
-    """Write an angle, given in rad, in degrees."""
+    """Write an angle given in rad in degrees, to `digits` decimals."""
     return f"{number(math.degrees(value), f'.{digits}f')}°"
 
 
 def percent(share: float) -> str:
-    """Write a share in percent."""
+    """Write a share (0 … 1) in percent."""
     return f"{number(100 * share, '.0f')} %"
 
 
 def count(number: int) -> str:
-    """Write a count with thin spaces between thousands."""
+    """Write an integer with thin spaces between thousands."""
     return f"{number:,}".replace(",", "\u2009")
 
 
 def wording() -> Words:
-    """Return the words and numbers of results in the window's language, as in the report."""
+    """Return the words and number formats of the reports in the window's language."""
     return Words(chosen())
 
 
 def show_facts(rows: ValueRows, facts: Iterable[Fact], tables: Iterable[FactTable] = ()) -> None:
-    """Show the facts of a result: those for a technician in sight, the others and each row of `tables` folded."""
+    """Show facts in rows: those for a technician in sight, all others and the `tables` folded."""
     facts, words = tuple(facts), wording()
     in_sight = [fact_row(fact) for fact in facts if fact.level == Reader.TECHNICIAN]
     folded = [fact_row(fact) for fact in facts if fact.level > Reader.TECHNICIAN]
@@ -64,7 +64,7 @@ def show_facts(rows: ValueRows, facts: Iterable[Fact], tables: Iterable[FactTabl
 
 
 def fact_lines(facts: Iterable[Fact]) -> str:
-    """Write the facts for a technician, a line each, where there is no room for rows."""
+    """Write the facts meant for a technician as text, one line each."""
     words = wording()
     return "\n".join(
         words("{name}: {value}", name=fact.heading(words), value=fact.text(words))
@@ -73,13 +73,13 @@ def fact_lines(facts: Iterable[Fact]) -> str:
 
 
 def fact_row(fact: Fact) -> ValueRow:
-    """Make the row of one fact."""
+    """Convert a fact to a row of label, value, tooltip and level."""
     words = wording()
     return fact.heading(words), fact.text(words), words.known(fact.tip), fact.grade
 
 
 def show_table(shown: DataTable, table: FactTable) -> None:
-    """Show facts in rows and columns, without the columns for metrologists alone."""
+    """Show a table of facts, without the columns meant for metrologists only."""
     words, table = wording(), table.for_reader(Reader.AUDITOR)
     shown.set_headers([(heading(words.known(one.label)), one.unit, words.known(one.tip)) for one in table.columns])
     shown.set_rows(table.texts(words))

@@ -22,7 +22,7 @@ from workbench.work.wire import INTERRUPT
 
 
 def main() -> None:
-    """Run the kernel until the window closes its pipe."""
+    """Run the IPython kernel of the console until the window closes the pipe."""
     connection, folder, colours = sys.argv[1:]
     threading.Thread(target=_listen, args=(threading.main_thread().ident,), daemon=True).start()
     os.chdir(Path.home())  # what is saved by name alone is not to lie in the project

@@ -99,11 +99,11 @@ REFUSE = Job("core.errors:refuse")
 
 
 def name_of(job: Job) -> str:
-    """Return the name of the function, without its module."""
+    """Return the name of a job's function, without its module."""
     return job.rpartition(":")[2]
 
 
 def resolve(job: Job) -> Any:
-    """Import the function of this name."""
+    """Import the function of a job and return it."""
     module, _, name = job.partition(":")
     return getattr(import_module(module), name)

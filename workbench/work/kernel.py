@@ -34,7 +34,7 @@ class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
     message_received = Signal(object)
 
     def start(self) -> None:
-        """Start listening."""
+        """Start listening on the socket to the kernel."""
         self._more = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._more.timeout.connect(self._read)
         self._notifier = QSocketNotifier(self.socket.getsockopt(zmq.FD), QSocketNotifier.Type.Read, self)
@@ -42,23 +42,23 @@ class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
         self._more.start()
 
     def send(self, message: dict[str, Any]) -> None:
-        """Send a message."""
+        """Send a Jupyter message to the kernel."""
         super().send(message)
         self._more.start()  # sending may take the notice of an answer with it
 
     def stop(self) -> None:
-        """Stop listening, and close the socket."""
+        """Stop listening, and close the socket to the kernel."""
         if self.socket is not None:
             self._notifier.setEnabled(False)
             self._more.stop()
             self.close()
 
     def closed(self) -> bool:
-        """Whether the socket is closed."""
+        """Whether the socket to the kernel is closed."""
         return self.socket is None
 
     def flush(self, timeout: float = 1.0) -> None:
-        """Handle the messages that have come."""
+        """Handle all messages of the kernel that have arrived."""
         self._read()
 
     def _read(self) -> None:
@@ -80,17 +80,17 @@ class Heartbeat(SuperQObject):  # type: ignore[misc]
         self._alive = False
 
     def start(self) -> None:
-        """Count the kernel as alive from now on."""
+        """Regard the kernel as alive from now on."""
         self._alive = True
 
     def stop(self) -> None:
-        """Stop: the kernel is not asked for any more."""
+        """Regard the kernel as stopped from now on."""
         self._alive = False
 
     pause = unpause = stop
 
     def is_alive(self) -> bool:
-        """Whether it was started."""
+        """Whether the kernel is regarded as alive: after `start`, before `stop`."""
         return self._alive
 
 
@@ -104,7 +104,7 @@ class Client(QtKernelClientMixin, KernelClient):  # type: ignore[misc]
     hb_channel_class = Type(Heartbeat)
 
     def execute(self, code: str, *args: Any, **kwargs: Any) -> str:
-        """Run `code` in the kernel; input typed while it stops another calculation is kept."""
+        """Send `code` to the kernel to be run, and return the message's id."""
         return str(super().execute(code, *args, **{**kwargs, "stop_on_error": False}))
 
 
@@ -130,11 +130,11 @@ class Kernel(ChildProcess):
         self.client.start_channels()
 
     def interrupt(self) -> None:
-        """Interrupt the calculation."""
+        """Interrupt the calculation that the kernel runs."""
         self._process.write(wire.INTERRUPT)
 
     def end(self) -> None:
-        """Close the sockets and end the process, as :class:`ChildProcess`."""
+        """Close the sockets to the kernel, and kill its process."""
         self._close_sockets()
         super().end()
 

@@ -50,16 +50,16 @@ class ChildProcess(QObject):
 
     @property
     def pid(self) -> int:
-        """Number of the process in the system; 0 if it does not run."""
+        """Process id in the operating system; 0 if the process does not run."""
         return self._process.processId()
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended, or could not be started, reported or not."""
+        """Whether the process has ended or could not be started."""
         return self._process.state() == QProcess.ProcessState.NotRunning
 
     def end(self) -> None:
-        """Kill the process, without waiting or reporting; this object deletes itself."""
+        """Kill the process without waiting for its end; this object then deletes itself."""
         if self._ended:
             return
         self._ended = True
@@ -69,7 +69,7 @@ class ChildProcess(QObject):
             self._process.kill()
 
     def wait(self) -> None:
-        """Wait until a process that was ended is gone: at the program's end, when no event comes any more."""
+        """Wait until a process that was killed is gone; for the program's end, when no event comes."""
         if self._process.state() != QProcess.ProcessState.NotRunning:
             self._process.waitForFinished(ENDS_WITHIN_MS)
         self._clean_up()
@@ -114,7 +114,7 @@ class WorkerProcess(ChildProcess):
         self.send(Kind.SETUP, 0, (warm, ahead))
 
     def send(self, kind: Kind, number: int, value: Any = None) -> None:
-        """Send a message; it is written when the process can take it. Raises what pickle raises."""
+        """Send the worker a message of a kind on job `number`; it is written when the pipe is free."""
         self._process.write(wire.frame(kind, number, value))
 
     def _clean_up(self) -> None:

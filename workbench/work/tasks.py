@@ -48,30 +48,30 @@ class Task(QObject):
 
     @property
     def lane(self) -> Lane:
-        """Lane of the task.
+        """Lane, a queue with one process, in which the task runs or waits.
 
         Not stored here: a lane that its last task kept alive would end with it, and end it again.
         """
         return cast(Lane, self.parent())
 
     def cancel(self) -> None:
-        """Ask the job to stop; it does so within a second, unless it is done by then."""
+        """Ask the job to stop, which it does within about a second unless it is done before."""
         self.lane.cancel(self)
 
     def send(self, command: Any) -> None:
-        """Send a command to a running job that takes any."""
+        """Send a command to the running job, if it takes commands."""
         self.lane.post(self, Kind.COMMAND, command)
 
     def shown(self) -> None:
-        """Report to a running job that the last view has been shown and the next one is welcome."""
+        """Tell the running job that its last view is on the screen and the next one may come."""
         self.lane.post(self, Kind.SHOWN)
 
     def answers(self, receiver: QObject, job: Job) -> bool:
-        """Whether the task is this job for this receiver."""
+        """Whether this task runs the job `job` for the object `receiver`."""
         return (self._receiver, self.job) == (id(receiver), job)
 
     def conclude(self, kind: Kind, value: Any = None) -> None:
-        """Send the answer to the receiver: the job is over."""
+        """Call the receiver's function for the job's end: done, failed or cancelled."""
         self.succeeded = kind is Kind.DONE  # even if Cancel was pressed: what is on the disk now is the new result
         try:
             if self.succeeded:
@@ -117,21 +117,21 @@ class Lane(QObject):
 
     @property
     def current(self) -> Task | None:
-        """Task that is running."""
+        """Task that runs; None if none does."""
         return self._current
 
     @property
     def busy(self) -> bool:
-        """Whether anything runs or waits."""
+        """Whether a task runs or waits."""
         return self._current is not None or bool(self._waiting)
 
     @property
     def pid(self) -> int:
-        """Number of the process in the system; 0 if there is none."""
+        """Process id of the lane's process in the operating system; 0 if there is none."""
         return self._process.pid if self._process is not None else 0
 
     def prepare(self) -> None:
-        """Start the process and let it import, and compile while idle, what it will need."""
+        """Start the lane's process ahead of its first job, so that it imports and compiles while idle."""
         if self._process is not None and self._process.is_over:
             self._end_process()  # its end is told in the next turn: too late for a job that is to begin now
         if self._process is None:
@@ -151,7 +151,7 @@ class Lane(QObject):
         offers: dict[str, str] | None = None,
         replace_waiting: bool = False,
     ) -> Task:
-        """Run a job: `job(*args, **offered)`.
+        """Queue a job, `job(*args, **offered)`, for the lane's process, and return its task.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Lane(QObject):
         return task
 
     def cancel(self, task: Task) -> None:
-        """Stop `task`, running or waiting."""
+        """Cancel a task of this lane, running or waiting."""
         waiting = next((entry for entry in self._waiting if entry[0] is task), None)
         if waiting is not None:
             self._waiting.remove(waiting)
@@ -194,19 +194,19 @@ class Lane(QObject):
             self._stop_timer.start()
 
     def cancel_all(self) -> None:
-        """Stop the running task, and drop the waiting ones."""
+        """Cancel the running task, and drop all tasks that wait."""
         for task, *_ in list(self._waiting):
             self.cancel(task)
         if self._current is not None:
             self.cancel(self._current)
 
     def post(self, task: Task, kind: Kind, value: Any = None) -> None:
-        """Send the job a message if it is still running."""
+        """Send a message of a kind to the task's job, if it still runs."""
         if task is self._current and self._process is not None:
             self._process.send(kind, task.number, value)
 
     def close(self) -> None:
-        """Kill the process, without waiting for its end; waiting and running jobs are cancelled."""
+        """Kill the lane's process without waiting for its end; all its tasks are cancelled."""
         for task, *_ in list(self._waiting):
             self.cancel(task)
         running, self._current = self._current, None
@@ -216,7 +216,7 @@ class Lane(QObject):
             self._conclude(running, Kind.CANCELLED, None)
 
     def wait_until_closed(self) -> None:
-        """Wait for killed processes to be gone: at the program's end, when no event comes any more."""
+        """Wait until killed processes of this lane are gone; for the program's end, when no event comes."""
         for process in self.findChildren(WorkerProcess):
             process.wait()
 

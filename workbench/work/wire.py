@@ -58,7 +58,7 @@ class Kind(IntEnum):
 
 
 def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None) -> bytes:
-    """Encode one frame; arrays beyond `LARGE_BYTES` are put into files in `folder`, if one is given.
+    """Encode a message as bytes: its kind, the job's number and a pickled value; large arrays go to files in `folder`.
 
     Raises
     ------
@@ -85,20 +85,20 @@ def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None
 
 
 def value_of(body: bytes) -> Any:
-    """Decode the value of a frame; its large arrays may be written to, and are freed with their last reference."""
+    """Decode the value of a message; large arrays in it are writable, and their memory is freed with them."""
     stream = io.BytesIO(body)
     large = [_mapped(path) for path in pickle.load(stream)]
     return pickle.load(stream, buffers=large)
 
 
 def forget(body: bytes) -> None:
-    """Free the files of a frame that is not waited for any more."""
+    """Delete the files of large arrays that a message refers to, as its value is not wanted any more."""
     for path in pickle.loads(body):
         Path(path).unlink(missing_ok=True)
 
 
 def read_frame(read: Callable[[int], bytes]) -> tuple[Kind, int, bytes]:
-    """Read the next frame of a pipe, by a function like `os.read`.
+    """Read the next message from a pipe by `read`, a function like os.read: kind, job number, and body.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def read_frame(read: Callable[[int], bytes]) -> tuple[Kind, int, bytes]:
 
 
 def memory_folder() -> tempfile.TemporaryDirectory[str]:
-    """Make a folder for the files of large arrays, in memory where the system has such a place."""
+    """Make a temporary folder for large arrays, in memory if the system has a folder there."""
     shared = Path("/dev/shm")
     place = shared if shared.is_dir() and os.access(shared, os.W_OK) else None
     _sweep(place or Path(tempfile.gettempdir()))

@@ -57,7 +57,7 @@ class Failure:
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
-        """Make the failure of the exception that is being handled."""
+        """Make the failure, as text, of the exception that is being handled."""
         return cls(type(error).__name__, str(error), traceback.format_exc())
 
     def __str__(self) -> str:
@@ -75,7 +75,7 @@ class Channel:
         self._progress: tuple[str, float] = ("", 0.0)
 
     def progress(self, step: str, done: int, total: int) -> None:
-        """Report progress of the job: raises Cancelled once the window has asked for it."""
+        """Report the progress of the job to the window; raises Cancelled if the window has asked for that."""
         self._check()
         if self.cancelled:
             raise Cancelled
@@ -86,22 +86,22 @@ class Channel:
             self._send(Kind.PROGRESS, self.number, (step, done, total))
 
     def emit(self, event: Any) -> None:
-        """Send an event to the window in the middle of the job."""
+        """Send an event of the running job to the window."""
         self._send(Kind.EVENT, self.number, event)
 
     def offer(self, event: Any) -> None:
-        """Send something to show, if the window has shown what was sent before."""
+        """Send a view to the window, unless the last view sent is not shown yet."""
         if self.ready():
             self.shown = False
             self._send(Kind.VIEW, self.number, event)
 
     def command(self) -> Any | None:
-        """Return the next command of the window, or None."""
+        """Return the next command that the window has sent to the job; None if there is none."""
         self._check()
         return wire.value_of(self.commands.popleft()) if self.commands else None
 
     def ready(self) -> bool:
-        """Whether the window has shown the last view."""
+        """Whether the window has shown the last view that the job sent."""
         self._check()
         return self.shown
 
@@ -120,7 +120,7 @@ class Worker:
         self._memory: dict[str, Any] = {}
 
     def serve(self) -> None:
-        """Import what the first job needs, then run jobs; while none waits, do pieces of work ahead."""
+        """Run the jobs that arrive until the pipe is closed; while none waits, import and compile ahead."""
         _, _, body = wire.read_frame(self._read)
         warm, ahead = wire.value_of(body)
         threading.Thread(target=self._listen, name="window", daemon=True).start()
@@ -201,7 +201,7 @@ class Worker:
 
 
 def run_live_job(request: LiveRequest, channel: Channel) -> LiveEnded:
-    """Run the live loop until the window sends Stop; pictures are sent only as fast as the window shows them."""
+    """Record as `request` says until the window sends Stop; views are sent as fast as the window shows them."""
     from core.pipeline.live.events import LiveView
     from core.pipeline.live.session import run_live
 
@@ -215,7 +215,7 @@ def run_live_job(request: LiveRequest, channel: Channel) -> LiveEnded:
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Serve the window that started this process."""
+    """Run the worker process for the window that started it."""
     folder = Path(arguments[1])
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides
     sys.setswitchinterval(SWITCH_S)

@@ -31,7 +31,7 @@ class LiveButtons(NamedTuple):
 
 
 def live_buttons(facts: LiveFacts) -> LiveButtons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why each button of the live source is disabled; "" for each that is enabled."""
     if not facts.running:
         return LiveButtons(facts.cannot_start, tr("Start the live source first."))
     if facts.stopping:

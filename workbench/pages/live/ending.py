@@ -28,7 +28,7 @@ class LiveEnding(QObject):
         self.folder: Path | None = None
 
     def begin(self, project: Path, folder: Path) -> None:
-        """Note that a recording into `folder` begins.
+        """Note on the disk that a recording into `folder` begins, so that it can be found after a crash.
 
         Raises
         ------
@@ -39,7 +39,7 @@ class LiveEnding(QObject):
         self.project_folder, self.folder = project, folder
 
     def hand_over(self, ended: LiveEnded, *, adding: bool, then: Callable[[], None]) -> None:
-        """Make the recording the step's source, `adding` it to the one before; `then` is called at the end."""
+        """Make a recording the source of its step, with the earlier pictures if `adding`; then call `then`."""
 
         def take(*, keep_left_out: bool = False) -> None:
             put_source(self._model, self._step, ended.folder, self._label(), keep_left_out=keep_left_out)
@@ -85,6 +85,6 @@ class LiveEnding(QObject):
 
 
 def calibrated_s(results: Mapping[str, Done]) -> float | None:
-    """Return the time of the older of the two calibrations, in s since 1970; None if one is missing."""
+    """Return the time of the older of the two calibrations in s since 1970; None if one is missing."""
     both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
     return min(both) if len(both) == 2 else None

@@ -153,33 +153,33 @@ class LivePresenter(QObject):
 
     @property
     def running(self) -> bool:
-        """Whether a recording is going on, from start until the source is closed."""
+        """Whether a recording goes on, from start until its source is closed."""
         return self._task is not None
 
     @property
     def live(self) -> bool:
-        """Whether pictures are coming: the first one is there, and stop has not been pressed."""
+        """Whether live pictures arrive: after the first one, and before stop is pressed."""
         return self.running and self.name != "" and not self.stopping
 
     @property
     def question(self) -> tuple[str, str]:
-        """Sentence and button of the present request to the user; two empty texts if there is none."""
+        """Sentence and button text of what the recording asks the user to do; two empty texts for nothing."""
         return (text_of(self._ask.sentence), tr(self._ask.button)) if self._ask is not None else ("", "")
 
     def forget(self) -> None:
-        """Forget the last recording."""
+        """Reset counts and messages of the last recording."""
         self.name, self.image_size = "", (0, 0)
         self.recorded = self.dropped = 0
         self.rate_hz = 0.0
         self.over()
 
     def over(self) -> None:
-        """Drop requests and advice; counts stay."""
+        """Drop what the recording asks and advises; its counts stay."""
         self.paused = self.stopping = self.gone = False
         self.advice, self.checks, self._ask = WELL_EXPOSED, (), None
 
     def hear(self, event: LiveEvent) -> None:
-        """Handle an event of the recording."""
+        """Handle an event that the recording has sent: state, counts, request, advice or view."""
         match event:
             case LiveStarted():
                 self.name, self.image_size = event.name, event.image_size
@@ -198,16 +198,16 @@ class LivePresenter(QObject):
 
     @property
     def buttons(self) -> LiveButtons:
-        """Reason for each disabled button, or ""."""
+        """Reason why each button of the live source is disabled; "" if it is enabled."""
         return live_buttons(LiveFacts(self.running, self.name != "", self.stopping, self.why_not_start))
 
     @property
     def why_not_start(self) -> str:
-        """Reason why none can be started, apart from one that runs, or ""."""
+        """Reason why no recording can be started, apart from one that runs; "" if it can."""
         return self.bench.cannot_write or self.cannot_start()
 
     def state_text(self) -> str:
-        """Describe the present state in a few words."""
+        """Write the state of the recording in a few words."""
         if not self.running:
             return tr("The live source is off.")
         if self.stopping:
@@ -221,7 +221,7 @@ class LivePresenter(QObject):
         return tr("Live: {camera}", camera=self.name)
 
     def counts_text(self) -> str:
-        """Write the numbers of recorded and lost pictures and the rate, with their units."""
+        """Write how many pictures were recorded and lost, and how many a second."""
         if not self.running:
             return ""
         parts = [self._recorded_text()]
@@ -232,7 +232,7 @@ class LivePresenter(QObject):
         return " · ".join(parts)
 
     def lost_text(self) -> str:
-        """Say what to do when frames are lost, or "": only a scan needs every frame, and a rare loss does no harm."""
+        """Write what to do against lost frames; "" if so few are lost that they do no harm."""
         total = self.recorded + self.dropped
         if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
             return ""
@@ -260,22 +260,22 @@ class LivePresenter(QObject):
 
     @property
     def can_add(self) -> bool:
-        """Whether there are pictures that new ones can be added to."""
+        """Whether the step has pictures that new ones can be added to."""
         return self.step in ("camera", "planes") and folder_of(self.model, self.step) is not None
 
     def set_adding(self, on: bool) -> None:
-        """Add the pictures of the next recording to those in use, instead of replacing them."""
+        """Set whether the next recording is added to the pictures in use or replaces them."""
         self.adding = on
         self.changed.emit()
 
     def get_ready(self) -> None:
-        """Prepare the process for a source that will soon be opened, and compile the simulated scenes."""
+        """Start the process of the live source ahead of its use, and compile what it needs."""
         self.bench.live.prepare()
         if self.settings.kind == "simulated" and not self.settings.devices and not self.settings.looking:
             self.settings.look_for_devices()
 
     def start(self, *, stop_other: bool = False) -> None:
-        """Open the source and start; if another page's recording runs, ask first (`other_running`)."""
+        """Start a recording; if one of another page runs, `other_running` asks first, unless `stop_other`."""
         if self.running or self.model.folder is None or self.cannot_start():
             return
         if why_not := self.bench.cannot_write:
@@ -313,7 +313,7 @@ class LivePresenter(QObject):
         self.changed.emit()
 
     def stop(self) -> None:
-        """Finish the recording; what is recorded is kept."""
+        """End the recording; the pictures recorded so far are kept."""
         if self.running and not self.stopping:
             self.stopping = True
             self._send(Stop())
@@ -321,7 +321,7 @@ class LivePresenter(QObject):
             self.changed.emit()
 
     def toggle(self) -> None:
-        """Start, or stop."""
+        """Start the recording, or stop it if it runs."""
         if self.running:
             self.stop()
         else:
@@ -331,43 +331,43 @@ class LivePresenter(QObject):
 
     @property
     def auto(self) -> bool:
-        """Whether views and poses are taken automatically."""
+        """Whether views and poses are taken automatically once they are still and new."""
         return self._auto
 
     def pause(self, on: bool) -> None:
-        """Pause the recording, or continue."""
+        """Pause the recording, or, with False, continue it."""
         if self.live and on != self.paused:
             self.paused = on
             self._send(Pause() if on else Resume())
             self.changed.emit()
 
     def mark(self) -> None:
-        """Mark the frame that is being recorded."""
+        """Mark the frame that is recorded now, to be found later."""
         if self.live and not self.paused:
             self._send(Mark())
 
     def capture(self) -> None:
-        """Take this picture now."""
+        """Take the live picture as a view or pose now."""
         if self.live:
             self._send(Capture())
 
     def set_auto(self, on: bool) -> None:
-        """Take views and poses automatically, or no longer; also before a start."""
+        """Set whether views and poses are taken automatically; also before a start."""
         if on != self._auto:
             self._auto = on
             self._send(Auto(on))
             self.changed.emit()
 
     def look_for(self, target: Target) -> None:
-        """Set another camera target to look for from now on."""
+        """Set the calibration target that live pictures are searched for."""
         self._send(LookFor(target))
 
     def discard(self, name: str) -> None:
-        """Discard a picture that has been taken."""
+        """Delete the picture called `name` that this recording has taken."""
         self._send(Discard(name))
 
     def go_on(self) -> None:
-        """Handle the one key of a foot switch or presenter: answer, else take the picture; of a scan, stop."""
+        """Handle the one key of a foot switch: answer the request, else take a picture, or stop a scan."""
         if self._ask is not None:
             self.answer()
         elif self.step != "scan":
@@ -383,28 +383,28 @@ class LivePresenter(QObject):
         return self.bench.settings.text(SOUND, "on") == "on"
 
     def set_sound(self, on: bool) -> None:
-        """Play a sound when a picture is taken or refused, or not."""
+        """Set whether a sound is played when a picture is taken or refused."""
         self.bench.settings.keep_text(SOUND, "on" if on else "off")
         self.changed.emit()
 
     def take_advice(self) -> None:
-        """Change the source's exposure as advised."""
+        """Set the source's exposure to the advised value."""
         if self.advice.settings is not None:
             settings, self.advice = self.advice.settings, WELL_EXPOSED
             self.settings.take(settings)
 
     def answer(self) -> None:
-        """Send the answer to the request: its button has been pressed."""
+        """Tell the recording that the user has done what it asked for."""
         if self._ask is not None:
             self._send(self._ask.answer)
 
     def shown(self) -> None:
-        """Ask for the next view: the last one is on the screen."""
+        """Ask the recording for its next view, as the last one is on the screen."""
         if self._task is not None:
             self._task.shown()
 
     def show_by(self, draw: Callable[[LiveView], None]) -> None:
-        """Draw each view by this function while it runs, and ask for the next by `shown()` even after an error."""
+        """Draw each live view by the function `draw`, and ask for the next view after it, even if it fails."""
 
         def show(view: LiveView) -> None:
             try:
@@ -500,7 +500,7 @@ class LivePresenter(QObject):
         self.bench.notices.info(said)
 
     def beep(self) -> None:
-        """Play a sound, unless it is switched off."""
+        """Play a short sound, unless sounds are switched off."""
         if self.sound:
             self.sounded.emit()
 

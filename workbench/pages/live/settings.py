@@ -27,12 +27,12 @@ OWN = "opencv"
 
 
 def choose_simulated(settings: AppSettings) -> None:
-    """Set the simulated rig as the source of the next project."""
+    """Set the simulated rig as the live source, for the next project."""
     settings.keep_text("live/kind", FIRST)
 
 
 def choose_own(settings: AppSettings) -> None:
-    """Set a camera as the source of the next project, the one chosen last if there was one."""
+    """Set a camera as the live source, for the next project: the camera chosen last, if there was one."""
     if settings.text("live/kind", FIRST) == FIRST:
         settings.keep_text("live/kind", settings.text("live/own kind", OWN))
 
@@ -59,44 +59,44 @@ class LiveSettings(QObject):
 
     @property
     def kind(self) -> str:
-        """Kind of the source, one of SOURCES."""
+        """Kind of the live source, one of SOURCES."""
         kind = self._bench.settings.text("live/kind", FIRST)
         return kind if kind in SOURCES else FIRST
 
     @property
     def devices(self) -> tuple[SourceInfo, ...]:
-        """Sources of this kind that were found last."""
+        """Devices of this kind of source that the last search found."""
         kind, found = self._listed
         return found if kind == self.kind else ()
 
     @property
     def choice(self) -> SourceChoice:
-        """Chosen source."""
+        """Kind and device of the live source that is chosen."""
         return SourceChoice(self.kind, self._bench.settings.text(f"live/{self.kind}/id", ""))
 
     @property
     def values(self) -> SourceSettings:
-        """Settings of the source; None leaves one as it is."""
+        """Settings of the chosen source; None for each that is left as the source has it."""
         return self._kept().settings(self.choice, self._step).only(self.names)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the settings of this source, as far as known: exactly once it has been open."""
+        """Names of the settings that the source has; exact once it has been open."""
         known = self._known.get(self.choice)
         return SOURCES[self.kind].settings if known is None else known.names
 
     @property
     def capabilities(self) -> Capabilities:
-        """Limits and choices of its settings, once the source has been open."""
+        """Limits and choices of the source's settings, as far as they are known."""
         return self._known.get(self.choice, Capabilities())
 
     @property
     def ending(self) -> Ending:
-        """Ending of the files of a scan's frames."""
+        """File ending of the frames of a scan, ".png" or ".pgm"."""
         return ".pgm" if self._bench.settings.text("live/ending", "") == ".pgm" else ".png"
 
     def set_kind(self, kind: str) -> None:
-        """Choose the kind of source; its last device and settings are restored."""
+        """Choose the kind of source; the device and settings used last with it are restored."""
         if kind != self.kind:
             self._bench.settings.keep_text("live/kind", kind)
             if kind != FIRST:
@@ -106,20 +106,20 @@ class LiveSettings(QObject):
             self.changed.emit()
 
     def set_id(self, identifier: str) -> None:
-        """Choose the device: its number, name, address, serial number or folder."""
+        """Choose the device by its number, name, address, serial number or folder."""
         if identifier != self.choice.id:
             self._bench.settings.keep_text(f"live/{self.kind}/id", identifier)
             self.changed.emit()
 
     def set_value(self, name: str, value: Any) -> None:
-        """Set one of SourceSettings; None leaves it to the source. What no source takes is told as a complaint."""
+        """Set one field of SourceSettings; None leaves it to the source. A complaint says if it is impossible."""
         try:
             self._keep(replace(self.values, **{name: value}))
         except InputError as error:
             self._complain(text_of(error))
 
     def set_region(self, text: str) -> None:
-        """Set the region from four whole numbers; an empty text leaves it to the source."""
+        """Set the part of the sensor from text with four whole numbers; "" leaves it to the source."""
         numbers = [int(number) for number in re.findall(r"\d+", text)]
         if text.strip() and len(numbers) != 4:
             self._complain(tr("A region is four whole numbers: first column, first row, width and height."))
@@ -130,21 +130,21 @@ class LiveSettings(QObject):
             self._complain(text_of(error))
 
     def take(self, settings: SourceSettings) -> None:
-        """Change the settings that are not None."""
+        """Change those settings that are not None in `settings`."""
         self._keep(self.values.updated(settings))
 
     def set_ending(self, ending: Ending) -> None:
-        """Choose the ending of the files of a scan's frames."""
+        """Choose the file ending of the frames of a scan."""
         if ending != self.ending:
             self._bench.settings.keep_text("live/ending", ending)
             self.changed.emit()
 
     def opened(self, choice: SourceChoice, capabilities: Capabilities) -> None:
-        """Store the capabilities of a source that is open."""
+        """Store what the source `choice` can do, as it has been opened."""
         self._known[choice] = capabilities
 
     def look_for_devices(self) -> None:
-        """List the devices of this kind, and check its driver; `devices_changed` when it is done."""
+        """Search the devices of this kind in the background; `devices_changed` tells when it is done."""
         kind, self.looking = self.kind, True
 
         def found(devices: Any, missing: Message | None = None) -> None:

@@ -24,7 +24,7 @@ class CurrentPose(CurrentPicture):
         return super().names() or [pose.name for pose in self._work.poses or ()]
 
     def features_of(self, name: str) -> PoseFeatures | None:
-        """Return the features of a pose; None if its pictures have not been searched."""
+        """Return the target and stripes found in the pose called `name`; None if it has not been searched."""
         return next((pose for pose in self._work.poses or () if pose.name == name), None)
 
     def refresh(self) -> None:

@@ -85,7 +85,7 @@ class PlanesLive(QWidget):
         in_column(self.panel, on=self)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the live source, and whether each pose is also taken with the laser off."""
         self.pairs.setChecked(self._presenter.live.pairs)
         enable(
             self.pairs,
@@ -109,7 +109,7 @@ class LaserForm(SettingsForm):
         self.edited.connect(self._tell)
 
     def refresh(self) -> None:
-        """Show the laser."""
+        """Show the fixed laser's lines, angle, channel and options."""
         rig, options = self._presenter.project.rig, self._presenter.project.options
         angle = math.degrees(rig.angle) if rig.angle else None
         self.set_values(

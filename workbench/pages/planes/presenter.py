@@ -60,7 +60,7 @@ class PlanesPresenter(CalibrationPresenter):
 
     @property
     def candidate(self) -> str:
-        """Id of the calibration that is shown, or ""."""
+        """Id of the calibration of the light planes that is shown; "" for none."""
         return planes_id(self.work.calibration.fan) if self.work.calibration is not None else ""
 
     def _is_current(self) -> bool:
@@ -111,7 +111,7 @@ class PlanesPresenter(CalibrationPresenter):
         return self.work.calibration.minority
 
     def accept(self) -> None:
-        """Accept the planes that are shown; undoable. A minority of poses needs a decision."""
+        """Accept the light planes that are shown, asking first if only a minority of poses was used; undoable."""
         minority = None if self.cannot_accept else self._minority()
         if minority is None or self.decide(minority):
             super().accept()
@@ -119,7 +119,7 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- laser
 
     def set_laser(self, field: str, value: Any) -> None:
-        """Change "lines", "angle" (rad; None: not stated), "channel" ("": found) or one of `option_values`; undoable.
+        """Change "lines", "angle" in rad (None: not stated), "channel" ("": found) or an option; undoable.
 
         What cannot be is refused with a sentence.
         """
@@ -140,14 +140,14 @@ class PlanesPresenter(CalibrationPresenter):
         self.model.edit(tr("change the laser"), after, f"laser {field}")
 
     def option_values(self) -> dict[str, Any]:
-        """Return the options of calibrating the planes; width and contrast of stripes as given, or as measured."""
+        """Return the options of calibrating the planes; width and contrast of stripes as set, or as measured."""
         return values_of("planes", self.project.options, self._found_stripe())
 
     def _found_stripe(self) -> StripeSettings | None:
         return usual_stripe(self.work.poses or ())
 
     def set_pairs(self, on: bool) -> None:
-        """Take each pose also with the laser off, or not; remembered by the program, as the rig stays the same."""
+        """Set whether each pose is also taken with the laser off; remembered by the program."""
         self.live.pairs = on
         self.bench.settings.keep_text(PAIRS, "yes" if on else "no")
         self.changed.emit()
@@ -155,7 +155,7 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- poses
 
     def views(self) -> tuple[PlanePose, ...]:
-        """List the poses as the calibration shown judges them."""
+        """List the poses with the quality that the calibration shown gives them."""
         return self.work.calibration.poses if self.work.calibration is not None else ()
 
     # ---- what happens elsewhere
@@ -173,7 +173,7 @@ class PlanesPresenter(CalibrationPresenter):
         return self.seen_by.camera, self.work.calibration.fan if self.work.calibration is not None else None
 
     def views_that_count(self) -> tuple[TargetView, ...]:
-        """List the views of the plate in the pictures, without those left out by hand."""
+        """List the views of the plane target in the pictures, without poses left out by hand."""
         excluded = self.project.options.excluded
         counting = (pose.view for pose in self.work.poses or () if self.stored(pose.name) not in excluded)
         return tuple(view for view in counting if view is not None)

@@ -43,7 +43,7 @@ class RigTab(QWidget):
         self._empty()
 
     def refresh(self) -> None:
-        """Draw the calibration that is shown, and mark the pose that is chosen."""
+        """Draw camera, light planes and poses of the calibration shown in 3D, the chosen pose marked."""
         calibration, camera = self._presenter.work.calibration, self._presenter.seen_by.camera
         if calibration is None or camera is None:
             if self._drawn != (None, None):

@@ -32,7 +32,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
     @property
     def poses(self) -> Poses | None:
-        """Poses found in the pictures; None until they have been searched."""
+        """Poses found in the pictures of the plane target; None until the pictures have been searched."""
         return self.found
 
     def left_out(self) -> dict[str, Message]:
@@ -40,7 +40,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
     @staticmethod
     def name_of(path: Path) -> str:
-        """Return the name of a pose; its picture with the laser off belongs to the one with the laser on."""
+        """Return the name in the project of a pose's picture; "" for its second picture with the laser off."""
         return "" if path.stem.endswith("_off") else path.stem
 
     def _labels(self) -> tuple[str, str]:
@@ -82,13 +82,13 @@ class PlanesCamera(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Forget the camera."""
+        """Drop the camera that was read."""
         self.camera: Camera | None = None
         self.reading = False
         self._id = ""
 
     def follow(self) -> None:
-        """Read the accepted camera if it has changed."""
+        """Read the accepted camera calibration, if it has changed."""
         folder, id_ = self._model.folder, self._model.project.accepted.camera
         if folder is None or not id_:
             self.forget()

@@ -60,24 +60,24 @@ class ProjectActions(QObject):
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
     def new_project(self) -> None:
-        """Ask for a name and make an empty project, for the user's own rig."""
+        """Ask for a name and folder, and make an empty project for the user's own rig."""
         own = partial(choose_own, self.bench.settings)
         self._make(tr("New project"), tr("New project"), new_project, then=own)
 
     def choose_project(self) -> None:
-        """Ask for a project folder and open it."""
+        """Ask for the folder of a project, and open the project."""
         folder = ask.choose_folder(self._window, tr("Open a project folder"), self.bench.settings.projects_folder)
         if folder is not None:
             self.open_dropped(folder)
 
     def choose_set(self) -> None:
-        """Ask for a recording set and make a project of it."""
+        """Ask for a recording set, and make a project that measures it."""
         folder = ask.choose_folder(self._window, tr("Choose a recording set (a folder with rig.toml)"), Path.home())
         if folder is not None:
             self.open_dropped(folder)
 
     def import_pictures(self) -> None:
-        """Ask where pictures of another program lie, and make a recording set of them.
+        """Ask where pictures of another program are, make a recording set of them, and a project of that.
 
         The open project measures its parts then; without one, a project that does is made.
         """
@@ -107,7 +107,7 @@ class ProjectActions(QObject):
         self.go_to.emit("scan" if parts[0] == "check" else parts[0])
 
     def open_dropped(self, path: Path) -> None:
-        """Open what `path` is: a project, its project.json or NAME.trisect, an earlier version, or a recording set."""
+        """Open a dropped file or folder: a project, a packed project, an earlier version, or a recording set."""
         path = path.resolve()
         if path.suffix == OPENER and not path.is_dir():
             path = path.parent
@@ -125,7 +125,7 @@ class ProjectActions(QObject):
             )
 
     def open_project(self, path: Path) -> None:
-        """Open a project; asks what to do about changes saved before a crash, or about a damaged project.json."""
+        """Open a project; ask first if there are autosaved changes or project.json is damaged."""
         folder = (path.parent if path.name == PROJECT else path).resolve()
         if folder == self.model.folder:
             return
@@ -141,7 +141,7 @@ class ProjectActions(QObject):
             self._open(folder, wanted.version, recover=wanted.recover, access=access)
 
     def open_version(self, path: Path) -> None:
-        """Open a project as it was in one of its backups; saving makes that the present one."""
+        """Open a project as one of its backups has it; saving makes that version the present one."""
         try:
             version = read_project(path)
         except InputError as error:
@@ -154,7 +154,7 @@ class ProjectActions(QObject):
             self._open(folder, version, access=access, then=lambda: self.bench.notices.info(text))
 
     def open_set(self, folder: Path) -> None:
-        """Make a project that measures a recording set where it lies."""
+        """Make a project that measures the recording set in `folder`, without copying it."""
         self._make(
             tr("New project from {name}", name=folder.name),
             folder.resolve().name,
@@ -162,7 +162,7 @@ class ProjectActions(QObject):
         )
 
     def open_sample(self) -> None:
-        """Open the finished sample project; it is measured first if this has not been done yet."""
+        """Open the finished sample project, which is measured first if that was never done."""
         self.sample.open()
 
     def _open_at_result(self, folder: Path) -> None:
@@ -178,7 +178,7 @@ class ProjectActions(QObject):
         self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
 
     def begin_first_measurement(self) -> None:
-        """Make a new project of the sample's pictures, with nothing measured, for the instructions.
+        """Make a new project of the sample's pictures with nothing measured, for the step-by-step instructions.
 
         If another project is opened while the pictures are rendered, it stays open.
         """
@@ -210,18 +210,18 @@ class ProjectActions(QObject):
         self._preparing = None
 
     def begin_next_part(self) -> None:
-        """Make a project of the next part of the series, and go to its scan."""
+        """Make the project of the next part of the series, and show its scan page."""
         self.copies.next_part(lambda: self.go_to.emit("scan"))
 
     def show_audit_trail(self) -> None:
-        """Show who did what in the open project, and when; present changes are saved before."""
+        """Save the project, and show its audit trail: who did what and when."""
         if self.model.folder is not None:
             if not self.model.is_read_only:
                 self.save()
             AuditWindow(self.bench, self.model.folder, self._window).exec()
 
     def sign_in(self) -> None:
-        """Sign in by name and PIN, or out if a person is signed in; earlier changes are saved first."""
+        """Sign a person in by name and PIN, or sign out who is signed in; changes are saved before."""
         names = [one.name for one in self.model.rules.people]
         if not names:
             text = tr(
@@ -238,7 +238,7 @@ class ProjectActions(QObject):
         self._sign_in()
 
     def may_leave_operator_mode(self) -> bool:
-        """Ask for name and PIN of an inspector or administrator, if people have roles; True if given."""
+        """Ask for name and PIN of an inspector or administrator; True if given, or if no roles are set."""
         if not self.model.rules.people:
             return True
         if not self._sign_in():
@@ -264,7 +264,7 @@ class ProjectActions(QObject):
         return True
 
     def save(self) -> bool:
-        """Save, with what is being typed; False if that failed."""
+        """Save the project, with fields still being edited; False if it could not be saved."""
         self._take_typed()
         try:
             self.model.save()
@@ -274,7 +274,7 @@ class ProjectActions(QObject):
         return True
 
     def close_project(self, then: Callable[[], object] = lambda: None) -> None:
-        """Save and close the project, then call `then`; neither if it is to stay open."""
+        """Save and close the project, then call `then`; neither if the user cancels."""
 
         def close() -> None:
             self.bench.measuring.cancel_all()
@@ -287,7 +287,7 @@ class ProjectActions(QObject):
             then()
 
     def leave(self, then: Callable[[], object]) -> None:
-        """Save the project, then call `then`: at once, or when a recording has ended; not if the user stays.
+        """Save the project, end a recording, then call `then`; not if the user cancels.
 
         Asks if something runs, or cannot be saved. While a recording ends the window takes no input.
         """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def ask_reason(parent: QWidget | None, label: str) -> str:
-    """Ask why limits are changed after something was judged by them; "": they are not to be changed."""
+    """Ask for the reason of changing limits after something was judged; "" if the user cancels the change."""
     text = tr(
         "Something was judged by these limits already. Why are they changed ({what})? It stays for good.", what=label
     )
@@ -70,7 +70,7 @@ class AuditWindow(QDialog):
         self._show()
 
     def add_remark(self, text: str) -> None:
-        """Add an entry with a remark."""
+        """Add an entry with the text of a remark to the audit trail."""
         if text.strip():
             try:
                 append(self._folder, "remark", why=text.strip())

@@ -30,7 +30,7 @@ class ProjectConsole(QObject):
         model.results_changed.connect(self._look)
 
     def open(self) -> None:
-        """Show the console; it is started if it is not there."""
+        """Show the Python console of the project, which is started if it does not run."""
         folder = self._model.folder
         if folder is None:
             return
@@ -40,7 +40,7 @@ class ProjectConsole(QObject):
         self.window.begin()
 
     def end(self, *, wait: bool = False) -> None:
-        """End the console, if it is open; `wait` until its processes are gone where no event comes any more."""
+        """End the Python console if it runs; with `wait`, return when its processes are gone."""
         if self.window is not None:
             self.window.end()
         if wait:

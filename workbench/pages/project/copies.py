@@ -52,7 +52,7 @@ class ProjectCopies(QObject):
     # ---- a copy
 
     def offer_copy(self) -> None:
-        """Offer a copy at once: the project that was opened cannot be saved."""
+        """Ask whether to continue in a copy, as the project that was opened cannot be saved."""
         folder = self._model.folder
         why = tr("{folder} is read-only: what is changed or measured here cannot be saved.", folder=folder)
         answers = [tr("Save a copy …"), tr("Look at it as it is")]
@@ -63,7 +63,7 @@ class ProjectCopies(QObject):
             self._bench.notices.warning(tr("{why} File, Save a copy, goes on in a copy.", why=why))
 
     def save_copy(self) -> None:
-        """Ask for a place, copy the project there, and continue in the copy, with unsaved changes."""
+        """Ask for a folder, copy the project with its unsaved changes there, and open the copy."""
         folder = self._folder(tr("Stop the recording first; then the project can be copied."))
         if folder is None:
             return
@@ -100,7 +100,7 @@ class ProjectCopies(QObject):
     # ---- a script
 
     def save_script(self) -> None:
-        """Ask for a file, and write what was done in the project as a script of commands."""
+        """Ask for a file, and write what was done in the project as a Python script of commands."""
         folder = self._folder(tr("Stop the recording first; then the script can be written."))
         if folder is None:
             return
@@ -122,7 +122,7 @@ class ProjectCopies(QObject):
     # ---- the next part
 
     def next_part(self, then: Callable[[], object]) -> None:
-        """Ask for serial number and operator, make and open the next part's project, and then call `then`."""
+        """Ask for serial number and operator, make and open the project of the next part, and call `then`."""
         folder = self._folder(tr("Stop the recording first; then the next part can be begun."))
         if folder is None:
             return
@@ -166,7 +166,7 @@ class ProjectCopies(QObject):
     # ---- one file
 
     def pack(self) -> None:
-        """Ask for a file, and pack the open project into it as it is now."""
+        """Ask for a file, and pack the open project into it, NAME.trisectz."""
         folder = self._folder(tr("Stop the recording first; then the project can be packed."))
         if folder is None:
             return
@@ -190,7 +190,7 @@ class ProjectCopies(QObject):
         )
 
     def choose_packed(self) -> None:
-        """Ask for a packed project, and unpack it."""
+        """Ask for a packed project, NAME.trisectz, and unpack it."""
         file = ask.choose_file_to_open(
             self._window, tr("Unpack a project"), None, tr("Packed project") + f" (*{PACKED})"
         )
@@ -198,7 +198,7 @@ class ProjectCopies(QObject):
             self.unpack(file)
 
     def unpack(self, file: Path) -> None:
-        """Ask where to, unpack a project there, and open it."""
+        """Ask for a folder, unpack the project in `file` there, and open it."""
         bench, asked_at = self._bench, self._model.folder
         answer = ask.ask_name_and_folder(
             self._window, tr("Unpack a project"), file.stem, bench.settings.projects_folder

@@ -48,7 +48,7 @@ class Outcome:
 
 
 def install(command: tuple[str, ...] | None = None) -> Outcome:
-    """Register the program to open projects by double click; doing it again changes nothing.
+    """Register the program for this user to open projects by double click; doing it again changes nothing.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def install(command: tuple[str, ...] | None = None) -> Outcome:
 
 
 def uninstall() -> Outcome:
-    """Undo the registration; what is not there is no error.
+    """Remove the registration for opening projects by double click; no error if there is none.
 
     Raises
     ------
@@ -105,14 +105,14 @@ def uninstall() -> Outcome:
 
 
 def installed() -> bool:
-    """Whether the program is registered for this user."""
+    """Whether the program is registered for this user to open projects by double click."""
     if PLATFORM == "win32":
         return bool(_classes().value(f"{CLASS}/shell/open/command/."))
     return PLATFORM != "darwin" and all(path.exists() for path in _wanted(("",)))
 
 
 def starter() -> tuple[str, ...]:
-    """Make the command that starts the running program."""
+    """Return the command line that starts the running program."""
     return program_command("trisect-workbench", "workbench")
 
 
@@ -130,7 +130,7 @@ def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:
 
 
 def entries(command: tuple[str, ...]) -> Mapping[str, str]:
-    """Make the files by which desktops of freedesktop.org find the program: texts by their names below `share`."""
+    """Make the texts of the desktop files (freedesktop.org) that register the program, by path below `share`."""
     kinds = {"mime": MIME, "packed_mime": PACKED_MIME}
     entry = template("desktop", "trisect.desktop").format(command=" ".join(map(_quoted, command)), **kinds)
     package = template("desktop", "trisect.xml").format(opener=OPENER, packed=PACKED, **kinds)
@@ -142,7 +142,7 @@ def entries(command: tuple[str, ...]) -> Mapping[str, str]:
 
 
 def template(folder: str, name: str) -> str:
-    """Read one of the program's own files for the system, with {places} for what differs."""
+    """Read a template file for the system, with {places} still to be filled."""
     return (files("resources") / folder / name).read_text(encoding="utf-8")
 
 
@@ -199,7 +199,7 @@ def _unregister() -> None:
 
 
 def choose_double_click(window: QWidget, notices: Notices) -> None:
-    """Ask whether the system is to open projects in this program, do it, and show the result."""
+    """Ask whether double clicks are to open projects in this program, register or remove it, and show the result."""
     try:
         there = installed()
         text = _there() if there else _not_there()

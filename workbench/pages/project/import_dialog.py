@@ -79,7 +79,7 @@ class ImportDialog(QDialog):
         self._show_plan(None)
 
     def request(self) -> ImportRequest:
-        """Make the import request of what is typed."""
+        """Make the import request from the fields of the dialog."""
         fields = {
             **{"camera": self.camera, "planes": self.planes, "planes_off": self.planes_off},
             **{"scan": self.scan, "check": self.check, "check_off": self.check_off},

@@ -53,14 +53,14 @@ class ChosenSet:
 
     @property
     def state(self) -> str:
-        """State, a key of `SET_STATES`."""
+        """State of the set, a key of `SET_STATES`: "todo", "running", "done" or "failed"."""
         if self.result is None:
             return "running" if self.running is not None else "todo"
         return "failed" if self.result.error else "done"
 
     @property
     def reason(self) -> str:
-        """Reason why it could not be measured."""
+        """Reason why the set could not be measured; "" if it could, or is not measured yet."""
         return text_of(self.result.error) if self.result is not None and self.result.error else ""
 
 
@@ -73,7 +73,7 @@ class ManySets(QObject):
         self.shown: ManySetsWindow | None = None
 
     def open(self) -> None:
-        """Show the window, with its earlier sets and results."""
+        """Show the window of many sets, with its earlier sets and results."""
         if self.shown is None:
             self.shown = ManySetsWindow(self._bench, self._window)
         self.shown.show()
@@ -135,7 +135,7 @@ class ManySetsWindow(QWidget):
         self._show()
 
     def add_folder(self, folder: Path) -> None:
-        """Add a recording set, or all those in a folder."""
+        """Add the recording set in `folder`, or all recording sets that the folder contains."""
         self._bench.quick.run(
             self,
             jobs.SETS_IN,
@@ -147,7 +147,7 @@ class ManySetsWindow(QWidget):
         )
 
     def run(self) -> None:
-        """Measure what is not yet measured; one that fails does not stop the others."""
+        """Measure all sets not measured yet, in the background; one that fails does not stop the others."""
         self._say("")
         self._measured = [one for one in self._sets if one.state != "done"]
         for one in self._measured:

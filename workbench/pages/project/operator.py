@@ -67,7 +67,7 @@ class OperatorButtons(NamedTuple):
 
 
 def stage_of(facts: OperatorFacts) -> Stage:
-    """Derive the stage of the part from the facts."""
+    """Derive how far the part is in operator mode (`Stage`) from the states of its steps."""
     if facts.running:
         return Stage.MEASURING
     if "scan" in facts.left and not facts.pictures:
@@ -78,7 +78,7 @@ def stage_of(facts: OperatorFacts) -> Stage:
 
 
 def operator_buttons(facts: OperatorFacts) -> OperatorButtons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why each of the four buttons is disabled; "" for each that is enabled."""
     stage = stage_of(facts)
     runs = tr("The part is being measured.") if facts.running else ""
     busy = runs or (tr("Wait until what is running has ended.") if facts.busy else "")
@@ -114,7 +114,7 @@ class OperatorMode(QObject):
 
     @property
     def facts(self) -> OperatorFacts:
-        """Present facts."""
+        """What stage and buttons of the operator mode are derived from, as it is now."""
         model, report = self._model, self._model.states["report"].state
         return OperatorFacts(
             pictures=bool(model.project.sources.scan),
@@ -129,35 +129,35 @@ class OperatorMode(QObject):
 
     @property
     def stage(self) -> Stage:
-        """Stage of the part."""
+        """How far the part is: pictures missing, ready, measuring, stopped or done."""
         return stage_of(self.facts)
 
     @property
     def buttons(self) -> OperatorButtons:
-        """Reason for each disabled button, or ""."""
+        """Reason why each of the four buttons is disabled; "" if it is enabled."""
         return operator_buttons(self.facts)
 
     @property
     def worst(self) -> Characteristic | None:
-        """Worst result, which is shown large; None where there is none."""
+        """Characteristic with the worst verdict, which the page shows large; None without results."""
         return next(iter(self.found.worst_first), None) if self.found is not None else None
 
     def turn(self, on: bool) -> None:
-        """Switch it on or off."""
+        """Switch the operator mode on or off."""
         self.on = on
         self.look()
 
     def take_pictures(self, folder: Path) -> None:
-        """Measure the part from the pictures in a folder."""
+        """Use the pictures in `folder` as the scan of the part, and measure it."""
         put_source(self._model, "scan", folder, tr("pictures of the scan"))
         self.measure()
 
     def measure(self) -> None:
-        """Do every step that is not up to date, to the report."""
+        """Do every step that is not up to date, from the camera to the report, in the background."""
         self._whole.start()
 
     def look(self) -> None:
-        """Read the results of the part, if there are new ones."""
+        """Read the results of the part in the background, if there are newer ones."""
         folder, results = self._model.folder, self._model.results
         asked = (folder, *((step, done.key, done.at) for step, done in sorted(results.items())))
         if self._model.is_open and self._model.project.accepted.planes != self._placed_under:

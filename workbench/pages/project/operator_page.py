@@ -114,7 +114,7 @@ class OperatorPage(QWidget):
             self.refreshing.soon()
 
     def refresh(self) -> None:
-        """Show the stage of the part."""
+        """Show how far the part is, its result, and which of the four buttons are enabled."""
         if not self._model.is_open:
             return
         info, stage = self._model.project.info, self._mode.stage
@@ -148,7 +148,7 @@ class OperatorPage(QWidget):
         self.tolerance.setVisible(scale is not None)
 
     def show_progress(self, stage: str, share: float | None, left: str) -> None:
-        """Show the present stage of the job, the share that is done (None: unknown), and the time left in words."""
+        """Show the stage of the running job, its share done (None: not known), and the time left in words."""
         self.detail.setText(stage)
         self.bar.setRange(0, 0 if share is None else 1000)
         self.bar.setValue(0 if share is None else round(1000 * share))

@@ -32,18 +32,18 @@ class ProjectPresenter(StepPresenter):
         self.whole.opened()
 
     def do_whole(self) -> None:
-        """Do every step that is not done or out of date, to the report; or show why that is impossible now."""
+        """Do every step that is not up to date, to the report, or show why that is impossible; by shortcut."""
         if why := self.whole.cannot_start:
             self.bench.notices.info(why)
         self.whole.start()
 
     def values(self) -> dict[str, Any]:
-        """Return the fields."""
+        """Return the project's name, part, people, temperatures and notes as the fields of the form."""
         info = self.project.info
         return {field.name: getattr(info, field.name) for field in fields(ProjectInfo)}
 
     def set_field(self, name: str, value: Any) -> None:
-        """Change one field; undoable."""
+        """Change one field of the project's data; undoable."""
         if isinstance(value, str):
             value = value.strip()
         info = replace(self.project.info, **{name: value})
@@ -54,7 +54,7 @@ class ProjectPresenter(StepPresenter):
         return "" if self.project.info.name.strip() else tr("Give the project a name first.")
 
     def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
-        """Make one row a step: title, state in words, the sentence that explains it, level."""
+        """Make a row for each step: its title, state in words, the sentence on it, and a level for the icon."""
         levels: dict[State, ProgressLevel] = {State.DONE: "good", State.OUTDATED: "warn"}
         return [
             (tr(TITLES[step]), tr(STEP_STATES[one.state]), one.sentence, levels.get(one.state, ""))
@@ -63,7 +63,7 @@ class ProjectPresenter(StepPresenter):
         ]
 
     def next_words(self) -> str:
-        """Say what to do next, in one sentence."""
+        """Write in one sentence what to do next in the project."""
         states = self.model.states
         for step in ORDER:
             if states[step].state is not State.DONE:
@@ -71,11 +71,11 @@ class ProjectPresenter(StepPresenter):
         return tr("All steps are done.")
 
     def place(self) -> str:
-        """Return the project's folder as text."""
+        """Return the path of the project's folder as text; "" without a project."""
         return str(self.model.folder or "")
 
     def label(self, name: str) -> str:
-        """Return the displayed name of a field."""
+        """Return the label of a field of the form."""
         return {
             "name": tr("Name"),
             "part": tr("Part"),

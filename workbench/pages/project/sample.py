@@ -28,11 +28,11 @@ class SampleProject(QObject):
 
     @property
     def preparing(self) -> bool:
-        """Whether the sample is being made."""
+        """Whether the sample project is being made in the background."""
         return self._task is not None
 
     def open(self) -> None:
-        """Open the sample, or start to make it and then open it, unless another project is open by then."""
+        """Open the sample project; if it is missing, make it first, and open it unless another project is open then."""
         if self._task is not None:
             self._bench.notices.info(tr("The sample is being prepared; the status bar says how far it is."))
             return

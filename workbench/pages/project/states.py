@@ -31,7 +31,7 @@ class StateChoice:
 
 
 def choose_access(parent: QWidget, folder: Path) -> Access | None:
-    """Ask how to open the project in `folder`; None if the user cancels. Asks where somebody has it open."""
+    """Ask how to open a project that is open elsewhere; None if the user cancels. Does not ask if it is not."""
     holder = lock_owner(folder)
     if holder is None:
         return Access.ALONE
@@ -49,7 +49,7 @@ def choose_access(parent: QWidget, folder: Path) -> Access | None:
 
 
 def choose_state(parent: QWidget, folder: Path) -> StateChoice | None:
-    """Ask which state of the project in `folder` to open; None if the user cancels.
+    """Ask whether to open a project as saved, as autosaved, or as a backup; None if the user cancels.
 
     Asks where there are changes autosaved before a crash, or where project.json is damaged and something else is not.
 

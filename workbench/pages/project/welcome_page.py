@@ -121,7 +121,7 @@ class WelcomePage(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the recent projects."""
+        """Show the list of recent projects."""
         recent = self._projects.bench.settings.recent
         self._listed.set_rows(
             [

@@ -198,7 +198,7 @@ class ReportPage(StepPage):
         return inside
 
     def export_menu(self) -> QMenu:
-        """Make the menu of all exports for the window; entries are disabled as the buttons are."""
+        """Make the menu of all exports; its entries are disabled as the page's buttons are."""
         menu = QMenu(tr("&Export"), self)
         menu.setToolTipsVisible(True)
         for kind in EXPORTS:

@@ -49,11 +49,11 @@ class ReportPresenter(StepPresenter):
     # ---- what is in it
 
     def sections(self) -> list[tuple[str, str, bool]]:
-        """List each section that can be left out: name, title, and whether it is in the report."""
+        """List each section of the report that may be left out: name, title, and whether it is printed."""
         return [(name, tr(title), name not in self.project.report.hidden) for name, title in SECTIONS.items()]
 
     def empty_section(self, name: str) -> str:
-        """Give the reason why a section has nothing to print yet, or ""."""
+        """Return the reason why a section has nothing to print yet; "" if it has."""
         kinds = {feature.kind for feature in self.project.inspection.features}
         nothing = {
             "view": "" if self.view else tr("Turn the surface on the Inspect page: it is printed as you left it."),
@@ -71,7 +71,7 @@ class ReportPresenter(StepPresenter):
         return nothing.get(name, "")
 
     def choose_section(self, name: str, shown: bool) -> None:
-        """Add a section or leave it out; undoable."""
+        """Print a section of the report, or leave it out; undoable."""
         hidden = self.project.report.hidden - {name} if shown else self.project.report.hidden | {name}
         title = SECTIONS[name]
         label = tr("put in “{title}”", title=title) if shown else tr("leave out “{title}”", title=title)
@@ -79,17 +79,17 @@ class ReportPresenter(StepPresenter):
         self.model.edit(label, replace(self.project, report=report))
 
     def choose_paper(self, paper: Any) -> None:
-        """Choose A4 or Letter; undoable."""
+        """Choose the paper of the report, "A4" or "Letter"; undoable."""
         report = replace(self.project.report, paper=paper)
         self.model.edit(tr("print on {paper}", paper=paper), replace(self.project, report=report))
 
     def choose_language(self, language: Any) -> None:
-        """Choose one of `languages`, or "", that of the window; undoable."""
+        """Choose the language of the report, as "de"; "" for the window's language. Undoable."""
         report = replace(self.project.report, language=language)
         self.model.edit(tr("language of the report"), replace(self.project, report=report))
 
     def choose_template(self, path: Path | None) -> None:
-        """Choose the template in this file (None: none), with its options; undoable."""
+        """Choose the report template in the file `path`, or None for no template; undoable."""
         folder, choices = self.model.folder, self.project.report
         if folder is None:
             return
@@ -114,7 +114,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """Stage of the report."""
+        """How far the report is: none, ready to be made, being made, made or outdated."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -131,14 +131,14 @@ class ReportPresenter(StepPresenter):
         )
 
     def ready(self) -> bool:
-        """Whether there is something to report."""
+        """Whether there are results that a report can print."""
         return "scan" in self.model.results
 
     def blocker(self) -> str:
         return "" if self.ready() else tr("Scan the part first; then there is something to report.")
 
     def warning(self) -> str:
-        """Say which of the results in the report are out of date, or ""."""
+        """Return a sentence on which results in the report are out of date; "" if none is."""
         states = self.model.states
         for step in ("scan", "inspect"):
             if states[step].state is State.OUTDATED:
@@ -158,11 +158,11 @@ class ReportPresenter(StepPresenter):
 
     @property
     def read_only(self) -> bool:
-        """Whether the project cannot be written to: then its report can be exported, but not stored with it."""
+        """Whether the project cannot be written to, so that a report can be exported but not stored in it."""
         return self.model.is_read_only
 
     def why_not_make(self) -> str:
-        """Give the reason why the report cannot be made now, or ""."""
+        """Return the reason why the report cannot be made now; "" if it can."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.MAKING: tr("The report is being made."),
@@ -173,11 +173,11 @@ class ReportPresenter(StepPresenter):
         }[why_not_make(self._facts())]
 
     def do_run(self) -> None:
-        """Make the report among the project's results."""
+        """Make the report and store it in the project's results, in the background."""
         self._make("")
 
     def export(self, kind: str, path: Path) -> None:
-        """Write a copy for others, of a kind in EXPORTS; a report that is out of date is made first."""
+        """Write an export of a kind in EXPORTS to `path`, after making the report if it is out of date."""
         ending = EXPORTS[kind].ending
         path = path if path.suffix.lower() == ending else path.with_name(path.name + ending)
         self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
@@ -188,7 +188,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def in_camera_frame(self) -> bool:
-        """Whether geometry is exported in the camera's frame, instead of the part's."""
+        """Whether clouds, meshes and shapes are exported in the camera's frame instead of the part's."""
         return self.bench.settings.text(EXPORT_FRAME, "part") == "camera"
 
     @in_camera_frame.setter
@@ -196,7 +196,7 @@ class ReportPresenter(StepPresenter):
         self.bench.settings.keep_text(EXPORT_FRAME, "camera" if wanted else "part")
 
     def export_missing(self, kind: str) -> str:
-        """Give the reason why this cannot be exported yet, or ""."""
+        """Return the reason why an export of this kind is not possible yet; "" if it is."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.NO_CAMERA: tr("Calibrate the camera first."),
@@ -206,7 +206,7 @@ class ReportPresenter(StepPresenter):
         }[why_not_export(self._facts(), kind)]
 
     def export_place(self, kind: str) -> Path:
-        """Return the proposed file of an export: in the folder of the last one, named after the part."""
+        """Propose the path of an export: in the folder used last, named after the part."""
         name = self.project.info.part or self.project.info.name or tr("result")
         name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or tr("result")
         words = {
@@ -221,7 +221,7 @@ class ReportPresenter(StepPresenter):
         return (folder if folder.is_dir() else Path.home()) / (name + EXPORTS[kind].ending)
 
     def results_folder(self) -> Path | None:
-        """Return the folder of the results; None if there are none."""
+        """Return the folder of the project's results; None if there are no results."""
         folder = self.model.folder / "results" if self.model.folder is not None else None
         return folder if folder is not None and folder.is_dir() else None
 
@@ -274,7 +274,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def drawing(self) -> bool:
-        """Whether pages are being drawn."""
+        """Whether the pages of the preview are being drawn."""
         return self._drawing is not None
 
     def opened(self) -> None:

@@ -45,7 +45,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """Derive the stage from the facts."""
+    """Derive how far the report is (`Stage`) from which results there are."""
     if facts.making:
         return Stage.MAKING
     if not facts.scan:
@@ -56,7 +56,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def why_not_make(facts: Facts) -> WhyNot:
-    """Give the reason why the report cannot be made among the project's results."""
+    """Return the reason why the report cannot be stored in the project's results; `WhyNot` "" if it can."""
     if facts.making:
         return WhyNot.MAKING
     if not facts.scan:
@@ -65,7 +65,7 @@ def why_not_make(facts: Facts) -> WhyNot:
 
 
 def why_not_export(facts: Facts, kind: str) -> WhyNot:
-    """Give the reason why one of EXPORTS cannot be exported."""
+    """Return the reason why an export of this kind is not possible; `WhyNot` "" if it is."""
     needs = EXPORTS[kind].needs
     if needs == "camera":
         return WhyNot.NOTHING if facts.camera else WhyNot.NO_CAMERA

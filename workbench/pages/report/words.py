@@ -13,7 +13,7 @@ SHORT_TITLES = {"view": label("3D view"), "maps": label("Residuals of both faces
 
 
 def export_words(kind: str) -> tuple[str, str, str]:
-    """Return title, help and icon of a kind of export."""
+    """Return the title, the help text and the icon's name of a kind of export."""
     return {
         "pdf": (tr("Report (PDF)"), tr("The report, for people"), "mdi6.file-pdf-box"),
         "cloud": (

@@ -78,12 +78,12 @@ class ArtefactDialog(QDialog):
 
     @property
     def chosen(self) -> Artefact | None:
-        """Artefact that is chosen in the table."""
+        """Artefact that is chosen in the table; None if none is."""
         row = self.table.current_row()
         return self._artefacts.known.get(self._ids[row]) if 0 <= row < len(self._ids) else None
 
     def refresh(self) -> None:
-        """Show the present registers."""
+        """Show the artefacts of both registers."""
         known, of_project = self._artefacts.known, self._artefacts.of_project
         before = self.chosen
         wanted, self._ids = self._wanted or (before.id if before else ""), tuple(known)
@@ -224,12 +224,12 @@ class ArtefactDialog(QDialog):
 
 
 def has_lapsed(artefact: Artefact) -> bool:
-    """Whether its certificate has expired today."""
+    """Whether the certificate of an artefact has expired by today."""
     return artefact.due is not None and artefact.due < date.today()
 
 
 def row(artefact: Artefact, of_project: bool) -> tuple[str, ...]:
-    """Make the row of an artefact in the table."""
+    """Make the texts of an artefact's row in the table; `of_project`: it is from the project's register."""
     value, width = with_uncertainty(artefact.value_mm, artefact.U_mm, wording())
     due = tr("not stated") if artefact.due is None else artefact.due.isoformat()
     return (
@@ -244,7 +244,7 @@ def row(artefact: Artefact, of_project: bool) -> tuple[str, ...]:
 
 
 def complaints(values: Mapping[str, object], taken: Collection[str]) -> dict[str, str]:
-    """Say what is wrong with the fields of an artefact, by their keys; `taken` are the other ids in its register."""
+    """Return a sentence for each field of an artefact that is wrong, by its key; `taken` are ids that are in use."""
     name, due = str(values["id"]).strip(), str(values["due"]).strip()
     wrong = {}
     if not name:
@@ -265,14 +265,14 @@ def complaints(values: Mapping[str, object], taken: Collection[str]) -> dict[str
 
 
 def artefact_of(values: Mapping[str, object]) -> Artefact:
-    """Make the artefact that the fields describe, where nothing is wrong with them."""
+    """Convert fields of the dialog, all of them valid, to an artefact."""
     value, width, k = (float(str(values[key])) for key in ("value_mm", "U_mm", "k"))
     name, certificate, due = (str(values[key]).strip() for key in ("id", "certificate", "due"))
     return Artefact(name, value, width, k, certificate, _day(due), cast(ArtefactKind, values["kind"]))
 
 
 def values_of(artefact: Artefact, *, own: bool) -> dict[str, object]:
-    """Return the fields that describe an artefact of the user's `own` register or the project's."""
+    """Convert an artefact to the fields of the dialog; `own`: it is in the user's register, not the project's."""
     due = "" if artefact.due is None else artefact.due.isoformat()
     return {**asdict(artefact), "due": due, "register": "own" if own else "project"}
 

@@ -41,22 +41,22 @@ class KnownArtefacts(QObject):
 
     @property
     def of_project(self) -> Mapping[str, Artefact]:
-        """Project's own artefacts, by their ids."""
+        """Artefacts in the project's own register, by id."""
         return {one.id: one for one in self._model.project.artefacts}
 
     @property
     def known(self) -> Mapping[str, Artefact]:
-        """Artefacts of both registers; the project's counts where both have one of the same id."""
+        """Artefacts of the user's and the project's register, by id; the project's comes first."""
         return {**self.own, **self.of_project}
 
     @property
     def cannot_compare(self) -> str:
-        """Reason why nothing can be compared now, or ""."""
+        """Reason why nothing can be compared with an artefact now; "" if something can."""
         reasons = [self._why_not(step) for step in ("gauge", "inspection")]
         return reasons[0] if all(reasons) else ""
 
     def why_not(self, artefact: Artefact, characteristic: str) -> str:
-        """Give the reason why this characteristic cannot be compared with an artefact now, or "".
+        """Return the reason why a measured characteristic cannot be compared with `artefact` now; "" if it can.
 
         "" is the thickness.
         """
@@ -84,7 +84,7 @@ class KnownArtefacts(QObject):
         )
 
     def compare(self, artefact: Artefact, characteristic: str = "") -> None:
-        """Compare this characteristic with its certificate; the result is added to the rig's history."""
+        """Compare a measured characteristic with an artefact's certificate, and add the result to the rig's history."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_compare:
             return
@@ -105,7 +105,7 @@ class KnownArtefacts(QObject):
         self.changed.emit()
 
     def add(self, artefact: Artefact, *, own: bool) -> None:
-        """Add an artefact to the user's register, or to the project's; the latter is undoable."""
+        """Add an artefact to the user's register (`own`) or to the project's, which is undoable."""
         self.problem = ""
         if own:
             self._ask_for_own(jobs.KEEP_OWN_ARTEFACT, artefact)
@@ -115,7 +115,7 @@ class KnownArtefacts(QObject):
         self._model.edit(label, replace(project, artefacts=(*project.artefacts, artefact)))
 
     def change(self, before: Artefact, after: Artefact | None, *, own: bool) -> None:
-        """Replace an artefact in its register, or remove it for None; undoable as `add`."""
+        """Replace the artefact `before` in its register by `after`, or remove it for None; undoable in the project."""
         self.problem = ""
         if own:
             self._ask_for_own(jobs.CHANGE_OWN_ARTEFACT, before.id, after)
@@ -131,7 +131,7 @@ class KnownArtefacts(QObject):
         self._model.edit(label, replace(project, artefacts=tuple(one for one in left if one is not None)))
 
     def read(self) -> None:
-        """Read the user's register, which may have been edited by hand, and the lengths to compare."""
+        """Read the user's register, as it may have been edited, and the lengths that can be compared."""
         self.problem = ""
         self._ask_for_own(jobs.OWN_ARTEFACTS)
         if self._model.folder is None:
@@ -152,14 +152,14 @@ class KnownArtefacts(QObject):
         )
 
     def opened(self) -> None:
-        """Follow another project: stop, and read what was measured with its calibrations."""
+        """Stop comparing, and read what the project now open has measured with its calibrations."""
         if self._task is not None:
             self._task.cancel()
         self._task, self.checks, self.charts, self._looked, self.lengths = None, (), (), "", {}
         self.follow()
 
     def follow(self) -> None:
-        """Follow a change of the project: read what was measured with its present calibrations."""
+        """Read what was measured with the project's present calibrations, if these have changed."""
         folder, project = self._model.folder, self._model.project
         accepted = project.accepted
         wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.planes else ""

@@ -43,7 +43,7 @@ class FrameBar(QWidget):
         self.used.clicked.connect(lambda on: presenter.set_used([presenter.scrub.current], on))
 
     def refresh(self) -> None:
-        """Show the current frame."""
+        """Show the current frame's number and sentence, and the stages that can be shown."""
         p = self._presenter
         names, scrub = p.work.names, p.scrub
         self.slider.blockSignals(True)
@@ -65,7 +65,7 @@ class FrameBar(QWidget):
         enable(self.stages[View.POINTS], why_not, self._tips()[View.POINTS])
 
     def choose(self, view: View) -> None:
-        """Show a stage as chosen."""
+        """Mark the stage `view` of the frame as the one that is shown."""
         self.stages[view].setChecked(True)
 
     def _lay_out(self) -> None:

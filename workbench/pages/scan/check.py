@@ -59,12 +59,12 @@ class RigCheck(QObject):
 
     @property
     def folder(self) -> Path | None:
-        """Folder of the pictures."""
+        """Folder of the check's pictures; None if none is chosen."""
         return folder_of(self._model, "check")
 
     @property
     def stage(self) -> CheckStage:
-        """Stage of the check."""
+        """How far the interim check is: no pictures, chosen, checking, checked, outdated or unreadable."""
         if self._task is not None:
             return CheckStage.CHECKING
         if self.problem:
@@ -75,18 +75,18 @@ class RigCheck(QObject):
 
     @property
     def valid(self) -> InterimCheck | None:
-        """Result, if it is of the present calibrations and pictures."""
+        """Result of the check, if it is of the present calibrations and pictures; else None."""
         return self.look if self.stage is CheckStage.CHECKED else None
 
     @property
     def problem(self) -> str:
-        """Reason why the last check of the project as it is gave no result, or ""."""
+        """Reason why the last check gave no result; "" if it gave one, or the project has changed since."""
         made_of, problem = self._problem
         return problem if problem and made_of == _key(self._model.project) else ""
 
     @property
     def cannot_check(self) -> str:
-        """Reason why nothing can be checked now, or ""."""
+        """Reason why nothing can be checked now; "" if something can."""
         project = self._model.project
         if self._task is not None:
             return tr("Camera and laser are being checked.")
@@ -102,7 +102,7 @@ class RigCheck(QObject):
 
     @property
     def cannot_readjust(self) -> str:
-        """Reason why camera and laser cannot be re-adjusted by the check now, or ""."""
+        """Reason why camera and laser cannot be re-adjusted by the check now; "" if they can."""
         if self._readjusting is not None:
             return tr("What a re-adjustment would change is being worked out.")
         if self.valid is None:
@@ -113,7 +113,7 @@ class RigCheck(QObject):
 
     @property
     def past(self) -> PastCheck | None:
-        """Result as the history has it."""
+        """The check's result as it is recorded in the rig's history; None if it is not."""
         look, history = self.look, self.history
         if look is None or history is None:
             return None
@@ -121,18 +121,18 @@ class RigCheck(QObject):
         return next((one for one in history.checks if (one.pictures_id, one.calibration_id) == same), None)
 
     def changed_since(self) -> tuple[str, ...]:
-        """List the inputs of the result that have changed since."""
+        """List the inputs of the check's result that have changed since it was made."""
         done = self._model.results.get("check")
         return changed(done.rests_on, inputs_of("check", self._model.project, {})) if done is not None else ()
 
     def use_folder(self, folder: Path) -> None:
-        """Use the pictures in this folder, undoable, and check if that is possible."""
+        """Use the pictures in `folder` for the check, undoable, and check if that is possible."""
         self.cancel()
         put_source(self._model, "check", folder, tr("choose the pictures of the check"))
         self.start()
 
     def start(self) -> None:
-        """Compare the check's pictures with the calibrations, in the worker process."""
+        """Check camera and laser by the check's pictures, in the background."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_check:
             return
@@ -151,7 +151,7 @@ class RigCheck(QObject):
         self.changed.emit()
 
     def propose_readjustment(self) -> None:
-        """Compute what a re-adjustment by the check would change; `proposed` is emitted with it."""
+        """Compute in the background what a re-adjustment by the check would change; `proposed` is emitted with it."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_readjust:
             return
@@ -170,7 +170,7 @@ class RigCheck(QObject):
         self.changed.emit()
 
     def accept_readjustment(self, proposal: ProposedReadjustment) -> None:
-        """Accept camera and laser as re-adjusted; undoable."""
+        """Store and accept camera and laser as the proposal re-adjusts them; undoable."""
         folder, project = self._model.folder, self._model.project
         if folder is None:
             return
@@ -203,12 +203,12 @@ class RigCheck(QObject):
             self.proposed.emit(proposal)
 
     def cancel(self) -> None:
-        """Stop checking; the result before stays."""
+        """Stop the check that runs; the earlier result stays."""
         if self._task is not None:
             self._task.cancel()
 
     def opened(self) -> None:
-        """Follow another project: stop, and read its result."""
+        """Stop the check that runs, and read the result of the project now open."""
         for task in (self._task, self._readjusting):
             if task is not None:
                 task.cancel()
@@ -217,7 +217,7 @@ class RigCheck(QObject):
         self.follow()
 
     def follow(self) -> None:
-        """Follow a change of the project or its results: read the recorded result."""
+        """Read the recorded result of the check again, as the project or its results have changed."""
         folder, done = self._model.folder, self._model.results.get("check")
         wanted = f"{folder}|{done.key}|{done.at}" if folder is not None and done is not None else ""
         if wanted == self._looked:

@@ -81,7 +81,7 @@ class CheckCard(QFrame):
         ask_to_stop_other(self, self._live, question)
 
     def refresh(self, *, wanted: bool = False) -> None:
-        """Show the stage of the check; `wanted`: taking its pictures is the next action."""
+        """Show the state of the interim check; `wanted`: its pictures are the next thing to take."""
         self._wanted = wanted
         check, stage = self._check, self._check.stage
         taking = self._live.running
@@ -166,7 +166,7 @@ class CheckCard(QFrame):
             self._check.accept_readjustment(proposal)
 
     def show_detail(self, detail: Detail | None) -> None:
-        """Show the judgement of the present live picture."""
+        """Show what the check says of the present live picture; None shows nothing."""
         sentence = detail.sentence if isinstance(detail, PlanesDetail) else None
         seen = text_of(sentence) if sentence is not None else ""
         if seen != self._seen:
@@ -279,6 +279,6 @@ def _tip(check: PastCheck) -> str:
 def facts(
     look: InterimCheck | None, chart: ControlChart | None, artefacts: Sequence[ArtefactCheck]
 ) -> tuple[Fact, ...]:
-    """Make the facts of the check, and of known artefacts measured with the same calibrations."""
+    """Make the facts (name, value, unit) on the interim check and on artefacts measured with the same calibrations."""
     of_artefacts = (named(one.artefact.id, artefact_facts(one)) for one in artefacts)
     return (*(check_facts(look, chart) if look is not None else ()), *chain(*of_artefacts))

@@ -37,7 +37,7 @@ class ScanCloud(QWidget):
         self.scene.clear(self._last)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the measured cloud, unless a scan is being recorded or measured."""
         p = self._presenter
         if p.stage in (Stage.LIVE, Stage.MEASURING) or p.work.frames is None:
             return  # what is there grows, or stands until it is clear what comes next
@@ -54,24 +54,24 @@ class ScanCloud(QWidget):
         self.scene.set_cloud(look.points, values=look.sigma, colouring=Colouring("σ", "mm", (0.0, limit)))
 
     def begin_live(self) -> None:
-        """Clear the view for a recording that begins."""
+        """Clear the view, as a live recording begins."""
         self._look = None
         self.scene.clear(self._message())
         self._grow_anew()
 
     def begin_measuring(self) -> None:
-        """Prepare for measuring the recording: what is shown stays until its first points come."""
+        """Prepare for a recording to be measured; the old cloud stays until its first points come."""
         self._look, self._growing = None, True
         if not self.scene.state().points:
             self.scene.clear(self._message())
 
     def show_live(self, view: LiveView) -> None:
-        """Show the new points of a picture of the live source."""
+        """Add the points that a live view brings."""
         if isinstance(view.detail, ScanDetail):
             self.grow(view.detail)
 
     def grow(self, detail: ScanDetail) -> None:
-        """Add the points of a frame, or show all points anew."""
+        """Add the points of a measured frame, or replace all points if the frame brings all."""
         if detail.renewed:
             self._grow_anew()
         if len(detail.points):

@@ -42,7 +42,7 @@ class Situation(NamedTuple):
 
 
 def guidance(now: Situation) -> Guidance:
-    """Choose the guidance: the first thing that the hand, or the technician, has to do."""
+    """Choose what to tell the hand during a scan, by what is most urgent: light, sentence and button."""
     recording = now.detail is not None and is_recording(now.detail.stage)
     level, said = _said(now)
     failed = next((text_of(one.message) for one in now.checks if one.state == "failed"), "") if recording else ""
@@ -52,12 +52,12 @@ def guidance(now: Situation) -> Guidance:
 
 
 def is_recording(stage: str) -> bool:
-    """Whether frames are recorded at this stage of a live scan, or it has only been paused."""
+    """Whether frames are recorded at this stage of a live scan, a pause included."""
     return stage in ("scanning", "paused")
 
 
 def is_enough(detail: ScanDetail) -> bool:
-    """Whether the recording may be stopped: enough of what was lit is covered."""
+    """Whether enough of what was lit is covered by points for the recording to be stopped."""
     return detail.stage == "scanning" and detail.share >= ENOUGH
 
 

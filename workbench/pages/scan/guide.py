@@ -105,7 +105,7 @@ class GuideBand(QFrame):
         self._steady.shown.connect(self._show)
 
     def refresh(self) -> None:
-        """Show the state of the presenter; a sentence stays for at least a second."""
+        """Show the present guidance and counts; a sentence stays for at least a second."""
         live, now = self._presenter.live, self._presenter.guidance
         self._steady.show((now.level, now.sentence), at_once=now.level == "")
         self.beside.setText(now.beside)

@@ -39,7 +39,7 @@ _CROSSINGS = ("good", "weak", "left out")
 
 
 def show_fan(image: ImageView, lines: Sequence[Sequence[Centreline]], *, numbered: bool = True) -> None:
-    """Show the fan's centrelines, one layer for each line; without numbers all as one."""
+    """Show the fan's centrelines on a picture, in one layer a line; not `numbered`: all in one layer."""
     names = []
     for place, pieces in enumerate(lines, start=1):
         if not pieces:
@@ -51,7 +51,7 @@ def show_fan(image: ImageView, lines: Sequence[Sequence[Centreline]], *, numbere
 
 
 def show_fan_pieces(image: ImageView, pieces: Sequence[Centreline], line: Sequence[int]) -> None:
-    """Show the fan's centrelines with the line (from 0) each of them belongs to; −1 where that is not known."""
+    """Show the fan's centrelines on a picture; `line` is each one's fan line from 0, or −1 if not known."""
     count = max(line, default=_UNKNOWN) + 1
     show_fan(image, [[piece for piece, of in zip(pieces, line, strict=True) if of == k] for k in range(count)])
     unknown = [piece.uv for piece, of in zip(pieces, line, strict=True) if of == _UNKNOWN]
@@ -60,7 +60,7 @@ def show_fan_pieces(image: ImageView, pieces: Sequence[Centreline], line: Sequen
 
 
 def show_target(image: ImageView, detail: PlanesDetail) -> None:
-    """Show the plane target and the stripes on it, each with its line where that is clear."""
+    """Show the plane target and the stripes on it, each stripe in the colour of its fan line if that is known."""
     if detail.uv is None:
         image.remove_layer("target")
     else:
@@ -76,7 +76,7 @@ def show_target(image: ImageView, detail: PlanesDetail) -> None:
 
 
 def show_sweep(image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[ArrayLike] = ()) -> None:
-    """Show the hand-held laser's centrelines, coloured by σ where it is given."""
+    """Show the hand-held laser's centrelines on a picture, coloured by the points' `sigma` if it is given."""
     lines = [piece.uv for piece in pieces]
     if len(sigma) == len(lines):
         title = tr("sweep: σ 0 … {limit:g} mm, else grey", limit=PREVIEW_SIGMA_MM)
@@ -86,7 +86,7 @@ def show_sweep(image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[A
 
 
 def show_swept(image: ImageView, pieces: Sequence[Centreline], bounced: Sequence[int]) -> None:
-    """Show the centrelines of a measured frame.
+    """Show the centrelines of a measured frame; those numbered in `bounced`, by reflected light, are marked.
 
     Those `bounced`, by their number, in another colour and marked with ×.
     """
@@ -102,7 +102,7 @@ def show_swept(image: ImageView, pieces: Sequence[Centreline], bounced: Sequence
 
 
 def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
-    """Show crossings as marks: green circle, amber triangle, red cross; the reason on hover."""
+    """Show crossings: good as green circles, weak as amber triangles, left out as red crosses; None: none."""
     titles = (tr("crossing, good"), tr("crossing, weak"), tr("crossing, left out"))
     for status, (name, mark, title) in enumerate(
         zip(_CROSSINGS, (CROSSING_GOOD, CROSSING_WEAK, CROSSING_LEFT_OUT), titles, strict=True)
@@ -119,7 +119,7 @@ def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
 def show_points(
     image: ImageView, uv: NDArray[np.float32] | None, sigma: NDArray[np.float32] | None, limit_mm: float
 ) -> None:
-    """Show the measured points of a frame in their order along the stripes, as lines coloured by σ."""
+    """Show the measured points of a frame at pixels `uv` (N, 2), coloured by σ (N,) in mm up to `limit_mm`."""
     if uv is None or sigma is None:
         image.remove_layer("points")
         return
@@ -131,7 +131,7 @@ def show_points(
 
 
 def show_coverage(image: ImageView, cells: NDArray[np.bool_], lit: NDArray[np.bool_]) -> None:
-    """Show cells with points, and cells with light but no points yet."""
+    """Show the grid cells that have points, and those that were lit but have none; both (rows, columns)."""
     image.set_cells("covered", cells, COVERED, title=tr("covered with points"))
     image.set_cells("lit", lit & ~cells, LIT, title=tr("lit, no points yet"))
 

@@ -37,7 +37,7 @@ STAGES_BEFORE = ("reference", "ready")
 
 
 def unchecked(check: Check) -> bool:
-    """Whether the note says that camera and laser have not been checked today: it stays as long as that is so."""
+    """Whether a check before the scan says that camera and laser were not checked today."""
     return check.name == "check" and check.state == "unknown"
 
 

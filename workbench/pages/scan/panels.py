@@ -50,7 +50,7 @@ class ScanCard(StageCard):
         self.buttons["whole"].hide()  # never beside Cancel: there is no room for three
 
     def refresh(self) -> None:
-        """Show the stage."""
+        """Show how far the scan is, and the buttons of what can be done next."""
         p, stage = self._presenter, self._presenter.stage
         measuring = stage is Stage.MEASURING
         self.buttons["whole"].setVisible(p.whole is not None and not measuring)
@@ -169,7 +169,7 @@ class SettingsPanel(QWidget):
         )  # fmt: skip
 
     def refresh(self) -> None:
-        """Show the settings."""
+        """Show the present settings of the scan."""
         values = self._presenter.settings()
         self.form.set_values(values)
         set_stripe_editable(self.form, values["automatic"])
@@ -191,7 +191,7 @@ class ResultPanel(QWidget):
             column.addWidget(widget)
 
     def refresh(self) -> None:
-        """Show the result."""
+        """Show the quality of the measured scan, why frames gave no points, and notes."""
         look = self._presenter.work.look
         if look is not self._shown:
             self._shown = look
@@ -238,7 +238,7 @@ class RunningPanel(QWidget):
         grid.setRowStretch(2, 1)
 
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
-        """Show the values of a frame; its picture is `width_px` wide."""
+        """Show the hand's motion and the coverage at one frame; `width_px` is its width. None shows nothing."""
         preview = detail.preview if detail is not None and detail.stage == "scanning" else None
         self.covered.setText(words.covered_sentence(detail.share) if detail is not None else "")
         self.hints.set_hints([text_of(hint) for hint in preview.hints] if preview is not None else ())

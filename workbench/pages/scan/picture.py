@@ -50,7 +50,7 @@ class ScanPicture(QWidget):
             live.notice.connect(self.image.announce)
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the chosen frame in the chosen stage, or a sentence if there is none."""
         p = self._presenter
         running = next((live for live in (p.live, p.check_live) if live.running), None)
         if running is not None:
@@ -62,27 +62,27 @@ class ScanPicture(QWidget):
             self._empty()
 
     def show_view(self, view: View) -> None:
-        """Show the frame in another stage."""
+        """Show the current frame in another stage of its processing."""
         self.wanted = view
         self._shown = None
         self.refresh()
 
     def show_live(self, view: LiveView) -> None:
-        """Show a picture of the live source."""
+        """Show a live picture with the stripes found in it."""
         self._begin("live")
         self.image.set_picture(view.picture, scale=view.scale)
         if isinstance(view.detail, ScanDetail):
             self._show_detail(view.detail)
 
     def show_check(self, view: LiveView) -> None:
-        """Show a picture taken for the check: the plane target and the stripes on it."""
+        """Show a live picture of the interim check, with the plane target and the stripes on it."""
         self._begin("check")
         self.image.set_picture(view.picture, scale=view.scale)
         if isinstance(view.detail, PlanesDetail):
             overlays.show_target(self.image, view.detail)
 
     def show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
-        """Show a frame of the recording that is being measured."""
+        """Show a frame that is being measured, with its stripes; the picture is reduced by `scale`."""
         self._begin("measured")
         self.image.set_picture(picture, scale=scale)
         self._show_detail(detail)

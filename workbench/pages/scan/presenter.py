@@ -80,7 +80,7 @@ class ScanPresenter(StepPresenter):
         self.model.results_changed.connect(self._results_changed)
 
     def offer_whole(self, whole: MeasuringAll) -> None:
-        """Set the whole job that the page offers."""
+        """Set the job that does all steps, which the page offers beside measuring the scan."""
         self.whole = whole
         whole.changed.connect(self.changed)
 
@@ -88,7 +88,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def stage(self) -> Stage:
-        """Stage of the scan."""
+        """How far the scan is: no recording, live, measuring, measured, outdated, …."""
         return stage_of(self._facts())
 
     def _facts(self) -> Facts:
@@ -112,12 +112,12 @@ class ScanPresenter(StepPresenter):
 
     @property
     def recording(self) -> bool:
-        """Whether frames of a live scan are recorded, or it has only been paused."""
+        """Whether frames of a live scan are being recorded, a pause included."""
         return self.stage is Stage.LIVE and is_recording(self.live_stage)
 
     @property
     def guidance(self) -> Guidance:
-        """Present guidance for the hand."""
+        """What the page tells the hand now: light, sentence and button."""
         live = self.live
         return guidance(
             Situation(live.state_text(), live.gone, live.stopping, live.question, live.paused, self._seen, live.checks)
@@ -125,7 +125,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def scrubbing(self) -> bool:
-        """Whether single frames of the recording are shown: nothing runs, and there are frames."""
+        """Whether single frames of the recording can be looked at: there are frames, and nothing runs."""
         running = self.check_live.running or self.stage in (Stage.LIVE, Stage.MEASURING)
         return not running and bool(self.work.frames)
 
@@ -146,7 +146,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def cannot_measure(self) -> str:
-        """Reason why the scan cannot be measured now, or ""."""
+        """Reason why the scan cannot be measured now; "" if it can."""
         return {
             WhyNot.NOTHING: "",
             WhyNot.LIVE: tr("Stop the recording first."),
@@ -161,18 +161,18 @@ class ScanPresenter(StepPresenter):
         }[disabled_reasons(self._facts()).measure]
 
     def changed_since(self) -> tuple[str, ...]:
-        """List the inputs of the result that have changed since."""
+        """List the inputs of the measured scan that have changed since it was measured."""
         done = self.model.results.get("scan")
         return changed(done.rests_on, inputs_of("scan", self.project, {})) if done is not None else ()
 
     @property
     def calibrated(self) -> bool:
-        """Whether a camera and laser planes are accepted: without them there are stripes, but no points."""
+        """Whether camera and light planes are accepted; without them frames give stripes but no points."""
         return bool(self.project.accepted.camera and self.project.accepted.planes)
 
     @property
     def check_is_due(self) -> bool:
-        """Whether pictures of the check are the next thing to take: none is of today, and the scan is still to come.
+        """Whether pictures of the interim check should be taken next: none is of today, and no scan is measured.
 
         Planes that were calibrated a moment ago are as good as a check.
         """
@@ -189,11 +189,11 @@ class ScanPresenter(StepPresenter):
 
     @property
     def folder(self) -> Path | None:
-        """Folder of the recording."""
+        """Folder of the recording; None if none is chosen."""
         return folder_of(self.model, "scan")
 
     def use_folder(self, folder: Path) -> None:
-        """Measure another recording; with that of a recording set, the check of its day is used."""
+        """Make `folder` the recording to measure; if it is in a recording set, use that set's check, too."""
         self.live.stop()
         self.run.cancel()
         put_source(self.model, "scan", folder, tr("choose the recording of the scan"))
@@ -204,22 +204,22 @@ class ScanPresenter(StepPresenter):
     # ---- frames
 
     def go_to_next_mark(self) -> None:
-        """Show the next frame that was marked; after the last one, the first."""
+        """Show the next frame that was marked while recording; after the last one, the first."""
         names, here = self.work.names, self.scrub.index
         marked = [place for place, name in enumerate(names) if name in self.work.marked]
         if marked:
             self.scrub.go_to(next((place for place in marked if place > here), marked[0]))
 
     def record_of(self, name: str) -> FrameRecord | None:
-        """Return the record of a frame, if the recording has been measured."""
+        """Return what the measured scan says of the frame called `name`; None if it does not have the frame."""
         return self.work.records().get(name)
 
     def is_left_out(self, name: str) -> bool:
-        """Whether a frame is left out by hand."""
+        """Whether the frame called `name` is left out by the user."""
         return name in self.project.options.excluded
 
     def set_used(self, names: Sequence[str], used: bool) -> None:
-        """Use frames, or leave them out; undoable."""
+        """Use the frames called `names`, or leave them out; undoable."""
         excluded = self.project.options.excluded
         after = excluded - set(names) if used else excluded | set(names)
         what = short(names[0]) if len(names) == 1 else tr("{count} frames", count=len(names))
@@ -227,7 +227,7 @@ class ScanPresenter(StepPresenter):
         self._set_options(label, replace(self.project.options, excluded=after))
 
     def points_of_frame(self) -> tuple[Any, Any]:
-        """Return pixels (N, 2) and σ (N,) in mm of the measured points of the frame whose stages are shown."""
+        """Return pixels (N, 2) and σ (N,) in mm of the current frame's measured points; None, None without any."""
         look, stages = self.work.look, self.scrub.stages
         record = self.record_of(stages.name) if stages is not None else None
         if look is None or record is None:
@@ -244,11 +244,11 @@ class ScanPresenter(StepPresenter):
 
     @property
     def largest_sigma_mm(self) -> float:
-        """Limit of σ of depth in mm up to which points are kept."""
+        """Largest σ of depth in mm that a point may have to be kept."""
         return self.project.options.sigma_cut_mm
 
     def settings(self) -> dict[str, Any]:
-        """Return the settings of the scan as the fields of a form."""
+        """Return the settings of the scan and of the rig's stability as the fields of a form."""
         rig = self.project.rig
         return {
             **values_of("scan", self.project.options, self._stripe_found),
@@ -259,7 +259,7 @@ class ScanPresenter(StepPresenter):
         }
 
     def set_setting(self, field: str, value: Any) -> None:
-        """Change a setting; undoable. What cannot be is refused with a sentence."""
+        """Change one setting of the scan; undoable. A signal says why if it is impossible."""
         if field in stability.rig_shown(self.project.rig):
             after = replace(self.project, rig=stability.rig_stated(self.project.rig, field, value))
             self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
@@ -288,17 +288,17 @@ class ScanPresenter(StepPresenter):
     # ---- measuring
 
     def measure(self) -> None:
-        """Measure the recording."""
+        """Measure the recording, in the background."""
         if not self.cannot_measure:
             self.run.start()
 
     def measure_everything(self) -> None:
-        """Do every step that is not up to date, to the report."""
+        """Do every step that is not up to date, to the report, in the background."""
         if self.whole is not None:
             self.whole.start()
 
     def cancel(self) -> None:
-        """Stop measuring; what was measured before stays."""
+        """Stop measuring the recording; an earlier result stays."""
         self.run.cancel()
 
     # ---- keys
@@ -310,7 +310,7 @@ class ScanPresenter(StepPresenter):
         (self.check_live if self.check_live.running else self.live).toggle()
 
     def do_capture(self) -> None:
-        """Do what the recording asks for: take the reference, start; or take this picture of the check."""
+        """Take the reference, start the frames, or take a picture of the check: what is asked for; by shortcut."""
         if self.check_live.running:
             self.check_live.capture()
         else:

@@ -62,7 +62,7 @@ class ProfilesPanel(QWidget):
         self._forget()
 
     def refresh(self, cannot: str) -> None:
-        """Show the state of the project; `cannot` is the reason why nothing can be measured now."""
+        """Show the thickness by the fixed lines; `cannot` is the reason why nothing can be measured now, or ""."""
         one = self._model.project.rig.lines == 1
         self.form.setVisible(one)
         self.form.set_values({"stage": self._stage, "tilt_sd": self._sd_deg or None})
@@ -74,7 +74,7 @@ class ProfilesPanel(QWidget):
         self._fit()
 
     def tilt(self) -> StatedTilt | None:
-        """Return the stated tilt of the faces."""
+        """Return the tilt of the faces that the user has stated; None if none is."""
         if self._model.project.rig.lines > 1 or not (self._stage or self._sd_deg):
             return None
         return StatedTilt(self._stage, math.radians(self._sd_deg) or None)

@@ -65,23 +65,23 @@ class ScanRun(QObject):
 
     @property
     def measuring(self) -> bool:
-        """Whether the scan is being measured, or waits for its turn."""
+        """Whether the scan is being measured, or waits for the process."""
         return self._task is not None
 
     @property
     def problem(self) -> str:
-        """Reason why the last measurement of the project as it is failed, or ""."""
+        """Reason why the last measurement of the scan failed; "" if it did not, or the project has changed."""
         made_of, problem = self._problem
         return problem if problem and made_of == _key(self._model.project) else ""  # the key takes a millisecond
 
     def opened(self) -> None:
-        """Follow another project: stop, and forget."""
+        """Stop measuring, and drop the last problem, as another project is open."""
         self.cancel()
         self._task, self._problem, self.no_gauge = None, ("", ""), None
         self._forget(by_itself=False)
 
     def start(self, *, by_itself: bool = False) -> None:
-        """Measure the recording, in the worker process."""
+        """Measure the project's recording, in the background."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.measuring:
             return
@@ -104,12 +104,12 @@ class ScanRun(QObject):
         self.changed.emit()
 
     def cancel(self) -> None:
-        """Stop measuring; the result before stays."""
+        """Stop measuring; an earlier result stays."""
         if self._task is not None:
             self._task.cancel()
 
     def shown(self) -> None:
-        """Ask for the next frame: the last `frame_seen` is on the screen."""
+        """Ask for the next frame, as the one of the last `frame_seen` is on the screen."""
         self._reading = False
         if self._latest is not None:
             self._read_picture()
@@ -169,7 +169,7 @@ class ScanRun(QObject):
 
 
 def short(name: str) -> str:
-    """Return the name of a frame within its folder."""
+    """Return the name of a frame without its folder."""
     return name.removeprefix(PART)
 
 

@@ -29,7 +29,7 @@ class FrameScrub(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Forget all: another recording is used."""
+        """Drop the current frame and its stages, as another recording is used."""
         self.current, self.problem = "", ""
         self._chosen = False
         self.stages: FrameStages | None = None
@@ -37,39 +37,39 @@ class FrameScrub(QObject):
 
     @property
     def index(self) -> int:
-        """Place of the current frame; −1 if there is none."""
+        """Index of the current frame in the recording; −1 if there is none."""
         names = self._work.names
         return names.index(self.current) if self.current in names else -1
 
     @property
     def up_to_date(self) -> bool:
-        """Whether the stages are those of the current frame."""
+        """Whether the stages that are known are those of the current frame."""
         return self.stages is not None and self.stages.name == self.current
 
     def set_active(self, active: bool) -> None:
-        """Set whether frames are to be shown now."""
+        """Set whether frames are shown now, so that their stages have to be computed."""
         self._active = active
         self.follow()
 
     def choose(self, name: str) -> None:
-        """Choose this frame."""
+        """Make the frame called `name` the current one."""
         if name in self._work.names and name != self.current:
             self.current, self._chosen = name, True
             self.follow()
             self.changed.emit()
 
     def go_to(self, index: int) -> None:
-        """Choose the frame at this place."""
+        """Make the frame with this index the current one."""
         names = self._work.names
         if names:
             self.choose(names[min(max(index, 0), len(names) - 1)])
 
     def step(self, by: int) -> None:
-        """Go on by so many frames."""
+        """Move `by` frames forward, or backward if negative."""
         self.go_to(self.index + by)
 
     def follow(self) -> None:
-        """Follow a change of the frames or of the calibrations they are shown with."""
+        """Compute the current frame's stages again, as frames or calibrations have changed."""
         names = self._work.names
         if self.current not in names:
             self.forget()

@@ -40,31 +40,31 @@ STABILITY: tuple[StabilityField, ...] = tuple(
 
 
 def usual_per_kelvin(one: StabilityField) -> float:
-    """Return the change per kelvin that is assumed of a rig of which nothing is stated, in the field's unit."""
+    """Return the assumed change per kelvin, in the field's unit, of a rig for which none is stated."""
     return one.usual / USUAL_KELVINS
 
 
 def drift_key(rate: str, key: str) -> str:
-    """Return the key on the page of a number of the "per_kelvin" or "per_hour" of a Drift."""
+    """Return the form's key of the number `key` of a drift "per_kelvin" or "per_hour"."""
     return f"{rate}.{key}"
 
 
 def shown(stability: Stability | None) -> dict[str, float | None]:
-    """Return the values by key; None where nothing is stated."""
+    """Return the stated stability of a rig by key, in the form's units; None where nothing is stated."""
     if stability is None:
         return dict.fromkeys(_PER_UNIT)
     return {key: round(getattr(stability, key) * factor, 6) for key, factor in _PER_UNIT.items()}
 
 
 def stated(stability: Stability | None, key: str, value: Any) -> Stability | None:
-    """Change one value of the stability; without a value nothing is stated any more, and all is assumed."""
+    """Return the stability with one value changed; None, nothing stated, if the value is None."""
     if value is None:
         return None
     return replace(stability or DEFAULT_STABILITY, **{key: value / _PER_UNIT[key]})
 
 
 def drift_shown(drift: Drift) -> dict[str, float | None]:
-    """Return the stated drift per kelvin and hour, by key; None where there is none."""
+    """Return the stated drift per kelvin and per hour by key, in the form's units; None where none is stated."""
     return {
         drift_key(rate, key): round(getattr(getattr(drift, rate), key) * factor, 6) or None
         for rate in ("per_kelvin", "per_hour")
@@ -73,18 +73,18 @@ def drift_shown(drift: Drift) -> dict[str, float | None]:
 
 
 def drift_stated(drift: Drift, key: str, value: Any) -> Drift:
-    """Change one value of the drift; without a value there is none of that."""
+    """Return the drift with one value changed; None removes that value."""
     rate, name = key.split(".")
     return replace(drift, **{rate: replace(getattr(drift, rate), **{name: (value or 0.0) / _PER_UNIT[name]})})
 
 
 def rig_shown(rig: Rig) -> dict[str, float | None]:
-    """Return all values of a rig's stability that the page has."""
+    """Return all fields of the form on a rig's stability and drift; None where nothing is stated."""
     return {**shown(rig.stability), **drift_shown(rig.drift), "calibrated_celsius": rig.air.calibrated}
 
 
 def rig_stated(rig: Rig, key: str, value: Any) -> Rig:
-    """Change one of these values of the rig."""
+    """Return the rig with one field of its stability or drift changed."""
     if key == "calibrated_celsius":
         return replace(rig, air=replace(rig.air, calibrated=value))
     if "." in key:

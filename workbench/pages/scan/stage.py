@@ -87,7 +87,7 @@ class Facts(NamedTuple):
 
 
 def stage_of(facts: Facts) -> Stage:
-    """Derive the stage from the facts."""
+    """Derive how far the scan is (`Stage`) from what is known of the recording and the results."""
     if facts.live:
         return Stage.LIVE
     if facts.measuring:
@@ -104,7 +104,7 @@ def stage_of(facts: Facts) -> Stage:
 
 
 def disabled_reasons(facts: Facts) -> Buttons:
-    """Derive from the facts why each button is disabled."""
+    """Derive why each button beside the scan is disabled; "" for each that is enabled."""
     cancel = WhyNot.NOTHING if facts.measuring else WhyNot.NOT_MEASURING
     return Buttons(_measure(facts), cancel, _record(facts), _take_check(facts))
 
@@ -171,7 +171,7 @@ class CheckButtons(NamedTuple):
 
 
 def check_buttons(facts: CheckFacts) -> CheckButtons:
-    """Derive from the facts why each button of the Check card is disabled."""
+    """Derive why each button of the interim check is disabled; "" for each that is enabled."""
     taken = tr("Pictures of the check are being taken.") if facts.taking else ""
     cannot_start = "" if facts.taking else facts.cannot_take
     return CheckButtons(
@@ -184,7 +184,7 @@ def check_buttons(facts: CheckFacts) -> CheckButtons:
 
 
 def why_not_compare(*, comparing: bool, measuring: bool, cannot_write: str, measured: bool, outdated: bool) -> str:
-    """Give the reason why a length that was `measured`, and is not `outdated`, cannot be compared with an artefact."""
+    """Return the reason why a measured length cannot be compared with an artefact; "" if it can."""
     return first(
         why(comparing, tr("An artefact is being compared.")),
         why(measuring, tr("The scan is being measured.")),

@@ -30,19 +30,19 @@ class FrameThumbnails(QObject):
         self.forget()
 
     def forget(self) -> None:
-        """Forget all: another recording is used."""
+        """Drop all thumbnails, as another recording is used."""
         self.pictures: dict[str, Any] = {}
         self._of = self._source()
         self._wanted: dict[str, None] = {}
         self._making = False
 
     def follow(self) -> None:
-        """Follow a change of the recording."""
+        """Drop the thumbnails if the recording or its colour channel has changed."""
         if self._of != self._source():
             self.forget()
 
     def request(self, name: str) -> None:
-        """Read the picture of a frame that is in sight and has none yet."""
+        """Read the thumbnail of the frame called `name` in the background, unless it is there."""
         if name in self.pictures:
             return
         self._wanted.pop(name, None)

@@ -16,7 +16,7 @@ from workbench.pages.words import count, percent, sigma
 
 
 def facts(look: ShownScan | None) -> tuple[Fact, ...]:
-    """Make the facts of the scan."""
+    """Make the facts (name, value, unit) on the measured scan; () without one."""
     if look is None:
         return ()
     extent = np.ptp(look.points, axis=0) if len(look) else None
@@ -25,7 +25,7 @@ def facts(look: ShownScan | None) -> tuple[Fact, ...]:
 
 
 def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None, *, marked: bool = False) -> str:
-    """Write the second line of a frame in the list; `seen`: points in the preview, and why there are none."""
+    """Write the line below a frame's name in the list: its points, or why it has none, and whether it is marked."""
     return " · ".join(filter(None, (tr("marked") if marked else "", _what_became(record, seen))))
 
 
@@ -41,7 +41,7 @@ def _what_became(record: FrameRecord | None, seen: tuple[int, Message | None] | 
 
 
 def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None) -> str:
-    """Make the sentence on one frame."""
+    """Write the sentence on the current frame: its number, its points, or why it gives none."""
     start = tr("Frame {number} of {total} ({name})", number=place + 1, total=total, name=name)
     if stages is not None and stages.left_out and (record is None or record.used):
         start = tr("{frame}, left out by hand", frame=start)
@@ -69,10 +69,10 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
 
 
 def covered_sentence(share: float) -> str:
-    """Write how much of the surface is covered."""
+    """Write which share of the lit surface is covered by points, in percent."""
     return tr("covered {share} of what was lit", share=percent(share))
 
 
 def speed_text(speed_px: float) -> str:
-    """Write how far the stripe moves from frame to frame."""
+    """Write how many pixels the stripe moves from frame to frame."""
     return "" if math.isnan(speed_px) else tr("{speed:.0f} px/frame", speed=speed_px)

@@ -48,27 +48,27 @@ class ScanWork(QObject):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Frames by their names in a set, in the order of the recording."""
+        """Names of the recording's frames within a recording set, in order."""
         return tuple(f"{PART}{path.name}" for path in self.frames or ())
 
     def records(self) -> Mapping[str, FrameRecord]:
-        """Return the record of each frame by its name; nothing if the result is of another recording."""
+        """Return what the measured scan says of each frame, by name; empty if it is of another recording."""
         return {record.name: record for record in self.look.frames} if self.look and self.of_this_recording else {}
 
     @property
     def of_this_recording(self) -> bool:
-        """Whether the scan among the results is of the recording in use."""
+        """Whether the scan in the project's results was measured from the recording in use."""
         done = self._model.results.get("scan")
         return done is not None and done.rests_on.get("recording") == self._model.project.sources.scan
 
     def opened(self) -> None:
-        """Load another project: list its frames, read its calibrations and its result."""
+        """List the frames of the project now open, and read its calibrations and its scan."""
         self._forget()
         if self._model.folder is not None:
             self.follow()
 
     def follow(self) -> None:
-        """Follow a change of the project or its results: read what has changed."""
+        """Read again what has changed in the project: frames, calibrations or the scan."""
         if self._model.folder is None:
             return
         self._list_frames()
@@ -76,7 +76,7 @@ class ScanWork(QObject):
         self._read_result(self._model.folder)
 
     def look_again(self) -> None:
-        """Read the result again if another thickness of it was measured: the part stands on its lower face."""
+        """Read the scan again if its thickness was measured anew, as heights count from the part's lower face."""
         if self._model.folder is not None and self.look is not None and self._thickness != self._thickness_now():
             self._looked = ""
             self._read_result(self._model.folder)

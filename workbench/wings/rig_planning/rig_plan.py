@@ -29,7 +29,7 @@ SIZE = (1000, 640)
 
 
 def planning_of(bench: Bench, window: QWidget) -> Callable[[], object]:
-    """Make the function that the menu's entry calls."""
+    """Make the function that opens the planning of a rig, to be called by the menu entry."""
     return RigPlans(bench, window).open
 
 
@@ -43,7 +43,7 @@ class RigPlans(QObject):
         """The plan that was made last, or that is being made."""
 
     def open(self) -> None:
-        """Plan the rig of the open project; without a project, ask for a file."""
+        """Show the window, and predict what the open project's rig will measure, or ask for a rig.toml."""
         model = self._bench.model
         if model.folder is None:
             self.choose()
@@ -58,14 +58,14 @@ class RigPlans(QObject):
         self._run(jobs.FORETELL_PROJECT, (model.folder, model.project), name, said)
 
     def choose(self) -> None:
-        """Ask for a rig.toml, and plan its rig."""
+        """Ask for a rig.toml, and predict what that rig will measure."""
         kinds = tr("Rig (*.toml)")
         path = ask.choose_file_to_open(self._window, tr("Plan a rig"), self._bench.settings.projects_folder, kinds)
         if path is not None:
             self.plan(path)
 
     def plan(self, rig: Path) -> None:
-        """Plan the rig in a rig.toml."""
+        """Predict what the rig in a rig.toml will measure, in the background."""
         self._run(jobs.FORETELL_RIG, (rig,), rig.name, str(rig))
 
     def _run(self, job: Job, what: tuple[object, ...], name: str, said: str) -> None:
@@ -119,11 +119,11 @@ class PlanWindow(QWidget):
 
     @property
     def is_planned(self) -> bool:
-        """Whether the plan has been made."""
+        """Whether the window shows a prediction, so that it can be saved."""
         return self._foretold is not None
 
     def show_plan(self, foretold: ForetoldRig) -> None:
-        """Show the rows and the map of a plan."""
+        """Show the rows and the map of σ of a prediction."""
         self._foretold = foretold
         self.table.set_rows(foretold.rows, [value for _, value in foretold.rows])
         self.map.set_map(foretold.sigma_mm, size=foretold.image_size, label=tr("σ of a depth"), unit="mm")

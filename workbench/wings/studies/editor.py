@@ -62,7 +62,7 @@ class StudyEditor(QWidget):
         self._dress()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the draft's table and settings, and which buttons are enabled."""
         self._dress()
         studies, draft = self._studies, self._studies.draft
         if draft is None:

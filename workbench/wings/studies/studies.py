@@ -50,7 +50,7 @@ class StudiesButtons(NamedTuple):
 
 
 def studies_buttons(facts: StudiesFacts) -> StudiesButtons:
-    """Decide why each button of the studies, and of the one being made, is grey; "": it is not."""
+    """Derive why each button of the studies and of the draft is disabled; "" for each that is enabled."""
     busy = tr("Wait for what is under way: {what}.", what=facts.busy) if facts.busy else ""
     choose = "" if facts.chosen else tr("Choose a study in the list first.")
     rows = "" if facts.rows else tr("Enter or paste measurements into the table first.")
@@ -107,22 +107,22 @@ class InspectStudies(QObject):
 
     @property
     def all(self) -> tuple[KeptStudy, ...]:
-        """Studies in the order they are reported."""
+        """Studies of the project, in the order the report prints them."""
         return self.model.project.studies
 
     @property
     def study(self) -> Any:
-        """Study that is chosen, as `core.wings.studies` gives it; None while it is read, or without a choice."""
+        """Study that is chosen, with its results; None while it is being read, or if none is chosen."""
         return self._looked.get(self.chosen)
 
     @property
     def working(self) -> bool:
-        """Whether something is being read or worked out for a study."""
+        """Whether a study is being read or computed."""
         return self._working is not None
 
     @property
     def buttons(self) -> StudiesButtons:
-        """Reasons why each button is grey; "": it is not."""
+        """Reason why each button is disabled; "" if it is enabled."""
         return studies_buttons(
             StudiesFacts(
                 busy="" if self._working is None else self._working.label,
@@ -134,7 +134,7 @@ class InspectStudies(QObject):
         )
 
     def choose(self, id_: str) -> None:
-        """Choose the study to show; "" for none."""
+        """Choose the study with this id, and read it; "" chooses none."""
         self.chosen = id_
         self._look()
         self.changed.emit()
@@ -142,12 +142,12 @@ class InspectStudies(QObject):
     # ---- the list
 
     def include(self, id_: str, included: bool) -> None:
-        """Put a study into the report or leave it out; undoable."""
+        """Print the study with this id in the report, or leave it out; undoable."""
         label = tr("report the study") if included else tr("leave the study out")
         self._put(tuple(replace(one, included=included) if one.id == id_ else one for one in self.all), label)
 
     def remove(self, id_: str) -> None:
-        """Take a study out of the project; undoable."""
+        """Remove the study with this id from the project; undoable."""
         if any(one.id == id_ for one in self.all):
             self._put(tuple(one for one in self.all if one.id != id_), tr("remove a study"))
 
@@ -163,7 +163,7 @@ class InspectStudies(QObject):
         )  # fmt: skip
 
     def export(self, id_: str, path: Path) -> None:
-        """Write a copy of a study: its table if the name ends in .csv, else study.json."""
+        """Write a copy of the study with this id to `path`: its table if that ends in .csv, else study.json."""
         path = path if path.suffix.lower() in (".csv", ".json") else path.with_name(path.name + ".json")
         self._run(
             jobs.EXPORT_STUDY, id_, path, label=tr("Writing {name}", name=path.name), offers={},
@@ -173,7 +173,7 @@ class InspectStudies(QObject):
     # ---- a new one
 
     def begin(self, kind: Kind) -> None:
-        """Begin a study of this kind, with an empty table."""
+        """Begin the draft of a new study of this kind, with an empty table."""
         folder = self.model.folder
         if folder is None:
             self.bench.notices.warning(tr("Open a project first."))
@@ -189,25 +189,25 @@ class InspectStudies(QObject):
         self.changed.emit()
 
     def give_up(self) -> None:
-        """Discard the draft, and cancel what is being read or worked out for it."""
+        """Discard the draft, and cancel what is being read or computed for it."""
         if self._working is not None:
             self._working.cancel()
         self.draft, self.problem = None, ""
         self.changed.emit()
 
     def write(self, text: str) -> None:
-        """Replace the text of the table."""
+        """Replace the text of the draft's table."""
         if self.draft is not None and text != self.draft.text:
             self.draft = replace(self.draft, text=text)
 
     def set_value(self, key: str, value: Any) -> None:
-        """Change a setting of the draft."""
+        """Change one setting of the draft."""
         if self.draft is not None:
             self.draft = replace(self.draft, values={**self.draft.values, key: value})
             self.changed.emit()
 
     def open_table(self, path: Path) -> None:
-        """Read the table in this file; names of results in it are seen from its folder."""
+        """Read the draft's table from a CSV file; folders named in it are relative to the file's folder."""
 
         def done(text: Any) -> None:
             if self.draft is not None:
@@ -216,7 +216,7 @@ class InspectStudies(QObject):
         self._run(jobs.READ_STUDY_TABLE, path, label=tr("Reading the table"), on_done=done, offers={}, of_project=False)
 
     def add_project(self, folder: Path) -> None:
-        """Add the results of another project to the table."""
+        """Append the results of the project in `folder` to the draft's table."""
         draft = self.draft
         if draft is None:
             return
@@ -233,7 +233,7 @@ class InspectStudies(QObject):
         )  # fmt: skip
 
     def finish(self) -> None:
-        """Make the study of the draft and store it; on an error the draft stays."""
+        """Make the study of the draft, and store it in the project; if that fails, the draft stays."""
         draft = self.draft
         if draft is None:
             return
@@ -252,7 +252,7 @@ class InspectStudies(QObject):
     # ---- what happens elsewhere
 
     def forget(self) -> None:
-        """Clear the choice, the draft and the studies that were read, as another project is open."""
+        """Drop the chosen study, the draft and all studies read, as another project is open."""
         self.chosen, self.draft, self.problem = "", None, ""
         self._looked, self._asked = {}, set()
         self.changed.emit()

@@ -77,7 +77,7 @@ class StudiesTab(QWidget):
         in_column(scroll, on=self, margins=(MARGIN_PX, 6, MARGIN_PX, 4))
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the list of studies and the chosen study, or the editor of the draft."""
         studies = self.studies
         self.stack.setCurrentIndex(0 if studies.draft is None else 1)
         if studies.draft is not None:

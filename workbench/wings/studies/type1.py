@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 
 def type1_part(presenter: InspectPresenter) -> Type1Part:
-    """Make the widget that the wing puts below the statistics of the repeats."""
+    """Make the widget of the type-1 study below the statistics of the repeats."""
     study = Type1OfRepeats(presenter.bench, presenter.repeats)
     study.changed.connect(presenter.changed)
     return Type1Part(presenter.repeats, study)
 
 
 def no_type1(repeats: InspectRepeats) -> str:
-    """Make the reason why there is no type-1 study of the repeats; "": there is one."""
+    """Return the reason why there is no type-1 study of the repeats; "" if there is one."""
     if repeats.spec.nominal_mm is None or repeats.spec.tolerance_mm is None:
         return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
     if len(repeats.all) < 2:
@@ -56,11 +56,11 @@ class Type1OfRepeats(QObject):
 
     @property
     def study(self) -> Type1Study | None:
-        """Type-1 study of the present repeats; None as long as there is none."""
+        """Type-1 study of the present repeats; None while it is not computed, or if it is not possible."""
         return self._made if self._made_of == self._wanted() else None
 
     def make(self) -> None:
-        """Start the study in the background, unless it is there or under way."""
+        """Compute the type-1 study in the background, unless it is computed or being computed."""
         repeats, wanted = self._repeats, self._wanted()
         spec = repeats.spec
         if no_type1(repeats) or spec.tolerance_mm is None or wanted in (self._made_of, self._asked):
@@ -107,7 +107,7 @@ class Type1Part(QWidget):
         in_column(self.title, self.rows, self.words, on=self)
 
     def refresh(self) -> None:
-        """Show the study, or what it needs, and start it if need be."""
+        """Show the type-1 study of the repeats, or what it still needs."""
         self.type1.make()
         study = self.type1.study
         self.title.setVisible(study is not None)
@@ -116,6 +116,6 @@ class Type1Part(QWidget):
         set_text(self.words, told if self._repeats.all else "")
 
     def facts(self) -> Sequence[Fact]:
-        """Return the facts of the study; nothing where there is none."""
+        """Return the facts of the type-1 study; () if there is none."""
         study = self.type1.study
         return () if study is None else study_facts(study)

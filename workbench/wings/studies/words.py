@@ -32,7 +32,7 @@ class ShownChart:
 
 
 def charts(study: Study) -> tuple[ShownChart, ...]:
-    """Make the control charts of a study: two of a series with limits, else none."""
+    """Convert the control charts of a study to what is drawn: two for a series with limits, else none."""
     if not isinstance(study, SeriesStudy) or study.charts is None:
         return ()
     both = (study.charts.location, study.label_of), (study.charts.spread, study.label_of_spread)
