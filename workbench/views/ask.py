@@ -24,7 +24,7 @@ from workbench.views.layouts import in_row
 
 
 def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str], *, harmless: bool = False) -> int:
-    """Ask a question; returns the place of the chosen answer. The last one is the safe one: Escape and Return mean it.
+    """Ask a question by a button for each of `answers`; return the chosen one's index. Escape and Return mean the last.
 
     Where the first one is `harmless`, Return means that: nothing is lost by it, and nothing is measured otherwise.
     """
@@ -42,43 +42,43 @@ def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str], *
 
 
 def choose_folder(parent: QWidget | None, title: str, start: Path) -> Path | None:
-    """Ask for a folder, or None."""
+    """Ask for a folder, beginning at `start`; None if the user cancels."""
     chosen = QFileDialog.getExistingDirectory(parent, title, str(start))
     return Path(chosen) if chosen else None
 
 
 def choose_file_to_save(parent: QWidget | None, title: str, start: Path, kinds: str) -> Path | None:
-    """Ask for a file to write, or None; `kinds` as "PDF (*.pdf)"."""
+    """Ask for a file to write; None if the user cancels. `kinds` is a filter, as "PDF (*.pdf)"."""
     chosen, _ = QFileDialog.getSaveFileName(parent, title, str(start), kinds)
     return Path(chosen) if chosen else None
 
 
 def choose_file_to_open(parent: QWidget | None, title: str, start: Path | None, kinds: str) -> Path | None:
-    """Ask for a file to read, or None; `kinds` as "STL (*.stl)"."""
+    """Ask for a file to read; None if the user cancels. `kinds` is a filter, as "STL (*.stl)"."""
     chosen, _ = QFileDialog.getOpenFileName(parent, title, str(start or Path.home()), kinds)
     return Path(chosen) if chosen else None
 
 
 def ask_name_and_folder(parent: QWidget | None, title: str, name: str, folder: Path) -> tuple[str, Path] | None:
-    """Ask for a project's name and the folder it is to be put in, or None."""
+    """Ask for a project's name and the folder to put it in; None if the user cancels."""
     dialog = _NameAndFolder(parent, title, name, folder)
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
 
 
 def ask_line(parent: QWidget | None, title: str, text: str) -> str:
-    """Ask for one line; "" if it is not given."""
+    """Ask for one line of text; "" if the user cancels."""
     line, given = QInputDialog.getText(parent, title, text)
     return line.strip() if given else ""
 
 
 def ask_name_and_pin(parent: QWidget | None, title: str, names: Sequence[str]) -> tuple[str, str] | None:
-    """Ask for one of `names` and its PIN, or None."""
+    """Ask for one of `names` and the PIN of that person; None if the user cancels."""
     dialog = _NameAndPin(parent, title, names)
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
 
 
 def ask_next_part(parent: QWidget | None, part: str, operator: str, folder: Path) -> tuple[str, str, Path] | None:
-    """Ask for the serial number of the next part and its operator: both, and the project's folder; or None."""
+    """Ask for the next part's serial number, operator and project folder; None if the user cancels."""
     dialog = _NextPart(parent, part, operator, folder)
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
 
@@ -200,6 +200,6 @@ class _NameAndFolder(QDialog):
 
 
 def file_name(name: str) -> str:
-    """Convert a project's name to that of a folder on every system."""
+    """Convert a project's name to a folder name that is valid on every system."""
     kept = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .")
     return kept or tr("project")

@@ -84,19 +84,19 @@ _SIGMA_STOPS = "6f7ff0 4f9be0 3bb5b8 4fc987 95d94a fde725"
 
 
 def fan_colour(line: int) -> str:
-    """Return the colour of fan line 1, 2, 3, …; they repeat."""
+    """Return the colour of fan line 1, 2, 3, …; colours repeat for more lines."""
     return FAN[(line - 1) % len(FAN)]
 
 
 def to_colour(colour: ColourLike) -> QColor:
-    """Convert any way of naming a colour to a QColor."""
+    """Convert a colour given by name, hex text, numbers or QColor to a QColor."""
     if isinstance(colour, QColor):
         return colour
     return QColor(colour) if isinstance(colour, str) else QColor(*colour)
 
 
 def to_rgba(colour: ColourLike) -> tuple[int, int, int, int]:
-    """Convert any way of naming a colour to four numbers, 0 … 255."""
+    """Convert a colour given by name, hex text, numbers or QColor to red, green, blue, alpha, 0 … 255."""
     if isinstance(colour, str):
         return _named(colour)
     chosen = to_colour(colour)
@@ -112,7 +112,7 @@ def _named(name: str) -> tuple[int, int, int, int]:
 
 @cache
 def sigma_table() -> NDArray[np.uint8]:
-    """Make the colours of σ from 0 (blue, good) to the limit (yellow): (256, 4)."""
+    """Make the 256 colours for σ (256, 4), uint8, from 0 (blue) to the limit (yellow)."""
     stops = np.array([list(bytes.fromhex(stop)) for stop in _SIGMA_STOPS.split()], dtype=np.float64)
     at = np.linspace(0, len(stops) - 1, 256)
     columns = [np.interp(at, np.arange(len(stops)), stops[:, i]) for i in range(3)]

@@ -15,13 +15,13 @@ from workbench.views.colours import Level
 
 
 def dress(widget: QWidget, sheet: str) -> None:
-    """Set a style sheet unless it is set: setting one makes the widget update its palette, where it is set again."""
+    """Set the style sheet of a widget, unless it has this sheet already."""
     if widget.styleSheet() != sheet:
         widget.setStyleSheet(sheet)
 
 
 def dress_edged(widget: QWidget, colour: str) -> None:
-    """Style a panel with an edge at its left in one of the theme's colours."""
+    """Style a widget as a panel with a coloured left edge; `colour` is a field of the theme's colours."""
     s = shades()
     dress(
         widget,
@@ -31,7 +31,7 @@ def dress_edged(widget: QWidget, colour: str) -> None:
 
 
 def grade_words() -> dict[Level, str]:
-    """Return the displayed word of each level of a grade."""
+    """Return the displayed word for each level of a grade, as "good"."""
     return {"": "", "good": tr("good"), "warn": tr("fair"), "bad": tr("poor")}
 
 
@@ -46,7 +46,7 @@ class IconLabel(QLabel):
         self.setFixedWidth(side)
 
     def show_icon(self, name: str, colour: str = "") -> None:
-        """Show this icon; without one the label takes no height."""
+        """Show the icon called `name`; "" shows none, and the label takes no height."""
         if (name, colour) != self.shown:
             self.shown = name, colour
             self.updateGeometry()
@@ -68,14 +68,12 @@ class IconLabel(QLabel):
 
 
 def inner_edge(widget: QWidget) -> QRectF:
-    """Return the line of one pixel that frames a widget: its middle is half a pixel inside, however fine the screen."""
+    """Return the rectangle for a frame of one pixel within a widget, half a pixel inside its edge."""
     return QRectF(widget.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
 
 
 def draw_focus(widget: QWidget) -> None:
-    """Draw a frame round a widget that has the focus; to be called while it is painted. It leaves a margin of a
-    pixel for it.
-    """
+    """Draw the focus frame of a widget if it has the focus; call it while the widget is painted."""
     if widget.hasFocus():
         painter = QPainter(widget)
         painter.setPen(QPen(QColor(shades().muted), 1.0, Qt.PenStyle.DashLine))  # the accent is for what is chosen
@@ -89,7 +87,7 @@ def copy_picture(widget: QWidget) -> None:
 
 
 def save_picture(widget: QWidget, title: str, name: str) -> None:
-    """Ask for a file and write a picture of the widget; `title` is the question's, `name` the file's at first."""
+    """Ask for a file and write a picture of the widget to it; `name` is the file name proposed."""
     kinds = tr("Picture (*.png)")
     path, _ = QFileDialog.getSaveFileName(widget, title, name, kinds)
     if path:
@@ -97,7 +95,7 @@ def save_picture(widget: QWidget, title: str, name: str) -> None:
 
 
 def breakable(path: str) -> str:
-    """Make a path that can be wrapped after each separator."""
+    """Return a path as text that can be wrapped after each separator."""
     return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
 
 

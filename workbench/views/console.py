@@ -45,7 +45,7 @@ OPEN_ANEW = "project = project.opened_again()"
 
 
 def console_missing() -> bool:
-    """Whether the extra `console` is not installed."""
+    """Whether the optional packages of the console (the extra `console`) are not installed."""
     return find_spec("qtconsole") is None
 
 
@@ -89,7 +89,7 @@ class ConsoleWindow(QWidget):
         self._show_state()
 
     def begin(self) -> None:
-        """Show the window, in front; it starts the first time."""
+        """Show the console window in front; its kernel is started the first time."""
         self.show()
         self.raise_()
         self.activateWindow()
@@ -97,12 +97,12 @@ class ConsoleWindow(QWidget):
             self._next.start()
 
     def set_outdated(self, outdated: bool) -> None:
-        """Set whether the project has changed since it was opened here."""
+        """Show, or hide, that the project has changed since the console opened it."""
         self._outdated = outdated
         self._show_state()
 
     def end(self) -> None:
-        """End the console's process, which may take a moment, and close."""
+        """End the kernel's process and close the console window."""
         self._next.stop()
         kernel, self.kernel = self.kernel, None
         if kernel is not None:

@@ -51,7 +51,7 @@ class FramesIcon(QIconEngine):
 
     @property
     def size(self) -> QSize:
-        """Size in logical pixels."""
+        """Size of the icon with all frames, in logical pixels."""
         width = sum(map(sum, self._widths)) + GAP * (len(self._frames) - 1)
         return QSize(round(width) + 1, HEIGHT + 1)
 
@@ -102,7 +102,7 @@ class FramesMark(QWidget):
         self.setFixedHeight(HEIGHT + 2)
 
     def show_frames(self, frames: Sequence[Frame]) -> None:
-        """Show these frames."""
+        """Show these feature control frames and datum letters side by side."""
         if tuple(frames) == self.frames:
             return
         self.frames = tuple(frames)

@@ -36,7 +36,7 @@ class EmptyState(QWidget):
     def set_text(
         self, message: str, button: str = "", on_button: Callable[[], None] | None = None, why_not: str = ""
     ) -> None:
-        """Show a sentence; the button only if it is named, and disabled while `why_not` gives the reason."""
+        """Show a sentence, and a button if `button` is its text; the reason `why_not` disables the button."""
         self._label.setText(message)
         set_text(self.button, button)
         enable(self.button, why_not, "")
@@ -44,7 +44,7 @@ class EmptyState(QWidget):
 
     @property
     def message(self) -> str:
-        """Sentence that is shown."""
+        """Sentence that is shown where there is nothing else to show."""
         return self._label.text()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -53,7 +53,7 @@ class EmptyState(QWidget):
         super().resizeEvent(event)
 
     def minimumSizeHint(self) -> QSize:
-        """Return the size without the margins: they follow the width, and must not keep a window wide."""
+        """Return the least size, without the margins, which shrink with the width."""
         hint, margins = super().minimumSizeHint(), self._column.contentsMargins()
         return QSize(hint.width() - margins.left() - margins.right() + 2 * _MARGIN, hint.height())
 

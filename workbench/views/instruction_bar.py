@@ -42,7 +42,7 @@ class InstructionBar(QFrame):
         self.hide()
 
     def show_instruction(self, number: int, count: int, text: str, *, can_show: bool) -> None:
-        """Show the instruction of this number; without `can_show` there is nothing to be pressed now."""
+        """Show instruction `number` of `count`; `can_show` adds the button that shows where to press."""
         self._place.setText(tr("{number} of {count}", number=number, count=count))
         self.words.setText(text)
         self.show_button.setVisible(can_show)

@@ -44,7 +44,7 @@ def in_column(
     margins: tuple[int, int, int, int] = NO_MARGINS,
     spacing: int | None = None,
 ) -> QVBoxLayout:
-    """Lay out parts one below the other; `on` is the widget that they are laid out on."""
+    """Lay out widgets, layouts and gaps one below the other, on the widget `on` if given; return the layout."""
     return _filled(QVBoxLayout(on) if on is not None else QVBoxLayout(), parts, margins, spacing)
 
 
@@ -54,12 +54,12 @@ def in_row(
     margins: tuple[int, int, int, int] = NO_MARGINS,
     spacing: int | None = None,
 ) -> QHBoxLayout:
-    """Lay out parts side by side; `on` is the widget that they are laid out on."""
+    """Lay out widgets, layouts and gaps side by side, on the widget `on` if given; return the layout."""
     return _filled(QHBoxLayout(on) if on is not None else QHBoxLayout(), parts, margins, spacing)
 
 
 def holding(layout: QLayout) -> QWidget:
-    """Make a widget with this layout and nothing else."""
+    """Make a widget that has this layout."""
     widget = QWidget()
     widget.setLayout(layout)
     return widget
@@ -114,7 +114,7 @@ class UpAndDown(QScrollArea):
         self.fitted.emit()
 
     def lacking(self) -> int:
-        """Return the height in px of the content that needs scrolling; negative: free."""
+        """Return by how many px the content is higher than the area; negative: how many px are free."""
         inside = self.widget()
         layout = inside.layout() if inside is not None else None
         if inside is None or layout is None:
@@ -140,11 +140,11 @@ class Folding(QWidget):
             self._box.addWidget(part, 1 if self._box.count() else share)
 
     def part(self, number: int) -> QWidget:
-        """Return the widget that holds a part, to hide it."""
+        """Return the widget that holds part `number`, so that it can be hidden."""
         return self._parts[number]
 
     def minimumSizeHint(self) -> QSize:
-        """Return the width of the widest part."""
+        """Return the least size: the width of the widest part."""
         return QSize(max(self._widths()), super().minimumSizeHint().height())
 
     def event(self, event: QEvent) -> bool:
@@ -168,7 +168,7 @@ class Folding(QWidget):
 
 
 def resize_on_screen(window: QWidget, width: int, height: int) -> None:
-    """Resize a window to this size in px, or to what its screen has room for."""
+    """Resize a window to a width and height in px, or to what its screen has room for."""
     window.resize(QSize(width, height).boundedTo(window.screen().availableSize()))
 
 
@@ -190,7 +190,7 @@ class Tabs(QTabWidget):
         self.setElideMode(Qt.TextElideMode.ElideRight)
 
     def add(self, tab: QWidget, title: str, tip: str = "") -> None:
-        """Add a tab after the others."""
+        """Add a tab with a title and a tooltip after the other tabs."""
         self.setTabToolTip(self.addTab(tab, title), tip or title)
 
 
@@ -207,7 +207,7 @@ class _TabBar(QTabBar):
 
 
 def heading(text: str) -> QLabel:
-    """Make a small title within a panel."""
+    """Make a label for a small heading within a panel."""
     label = QLabel(text)
     label.setObjectName("heading")
     return label
@@ -253,12 +253,12 @@ class FewLines(Sentence):
         self.setObjectName("muted")
 
     def set_text(self, text: str, *, steady: bool) -> None:
-        """Show a text."""
+        """Show a text in the label; `steady`: a text that is too long is cut instead of taking more lines."""
         self._steady = steady
         self.setText(text)
 
     def text(self) -> str:
-        """Return the whole text."""
+        """Return the text of the label in full, also if it is shown cut."""
         return self._said
 
     def setText(self, text: str) -> None:
@@ -297,14 +297,14 @@ class FewLines(Sentence):
 
 
 def muted(text: str = "") -> Sentence:
-    """Make an explaining sentence."""
+    """Make a label for an explaining sentence, in the theme's muted colour."""
     label = Sentence(text)
     label.setObjectName("muted")
     return label
 
 
 def alarm() -> Sentence:
-    """Make a sentence in red that is shown first; it takes no room when it is empty."""
+    """Make a label for a sentence in red; it takes no room while it is empty."""
     label = Sentence()
     label.setObjectName("alarm")
     label.hide()
@@ -312,20 +312,20 @@ def alarm() -> Sentence:
 
 
 def set_notes(notes: Iterable[Message], grave: QLabel, others: QLabel) -> None:
-    """Show notes, the grave ones in the label that is shown first."""
+    """Show notes in two labels, grave ones in `grave`, the rest in `others`."""
     told = gravest_first(notes)
     for label, wanted in ((grave, True), (others, False)):
         set_text(label, "\n".join(text_of(note) for note in told if is_grave(note) is wanted))
 
 
 def set_text(label: QLabel | QAbstractButton, text: str) -> None:
-    """Show a text in a label, or hide the label where it is empty."""
+    """Show a text in a label or button, which is hidden while the text is ""."""
     label.setText(text)
     label.setVisible(bool(text))
 
 
 def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
-    """Enable a button unless there is a reason why not; its tip is the reason, or its action.
+    """Enable a button if `why_not` is ""; else disable it with that reason as its tooltip instead of `tip`.
 
     Greyed while it has the focus, it leaves the focus where it was: on what it stands on.
     """
@@ -336,7 +336,7 @@ def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
 
 
 def mark_primary(button: QAbstractButton, primary: bool) -> None:
-    """Style a button as the next action, or as one of the others."""
+    """Style a button as the page's primary one, or as an ordinary one."""
     if button.property("primary") != primary:
         button.setProperty("primary", primary)
         button.style().unpolish(button)
@@ -344,8 +344,7 @@ def mark_primary(button: QAbstractButton, primary: bool) -> None:
 
 
 def rename(button: QAbstractButton, text: str) -> None:
-    """Set the text of a button. Where that is another thing, it leaves the focus beside itself: Space was for the
-    first.
+    """Change the text of a button; a focused button gives up the focus, so that Space does not press the new one.
 
     Else the focus would lie on Stop as long as something runs that was started by that button.
     """
@@ -355,7 +354,7 @@ def rename(button: QAbstractButton, text: str) -> None:
 
 
 def keep_focus(window: QWidget) -> bool:
-    """Move the focus from a disabled or hidden widget to the one that contains it; True if needed.
+    """Move the focus from a disabled or hidden widget to a widget that contains it; True if it was moved.
 
     Qt gives it to the next widget, where the next Space would press a button that nobody chose.
     """

@@ -29,18 +29,18 @@ _DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphin
 
 
 def manual_folder() -> Path:
-    """Return the folder of the manual's pages."""
+    """Return the folder that holds the pages of the manual."""
     return Path(str(files("resources") / "manual"))
 
 
 def manual_page(name: str) -> Path:
-    """Return a page by its name without an ending, in the window's language if there is one in it."""
+    """Return the path of the manual's page called `name`, in the window's language if that is translated."""
     translated = manual_folder() / language_name() / f"{name}.md"
     return translated if translated.is_file() else manual_folder() / f"{name}.md"
 
 
 def headings(path: Path) -> list[str]:
-    """List the names of the headings of a page for links, as Sphinx makes them."""
+    """List the link names of all headings of a manual's page, as Sphinx makes them."""
     lines = _FENCED.sub("", path.read_text(encoding="utf-8")).splitlines()
     titles = [line.lstrip("#").strip() for line in lines if line.startswith("#")]
     return [_NOT_IN_ANCHORS.sub("", title.lower().replace(" ", "-")) for title in titles]
@@ -55,7 +55,7 @@ class ManualPages(QTextBrowser):
         self.anchorClicked.connect(self._follow)
 
     def open_page(self, name: str) -> None:
-        """Show one page by its name without an ending: "scan"."""
+        """Show the manual's page called `name`, as "scan"."""
         self._show(QUrl.fromLocalFile(str(manual_page(name))))
 
     def _follow(self, link: QUrl) -> None:
@@ -77,7 +77,7 @@ class ManualPages(QTextBrowser):
     def doSetSource(
         self, name: QUrl | str, type: QTextDocument.ResourceType = QTextDocument.ResourceType.UnknownResource
     ) -> None:
-        """Load a page as Qt reads Markdown; what is for Sphinx alone is left out."""
+        """Load a page of the manual as Markdown; directives for Sphinx are left out (called by Qt)."""
         path = Path(QUrl(name).toLocalFile())
         if path.suffix != ".md" or not path.is_file():
             return
@@ -129,7 +129,7 @@ class ManualWindow(QWidget):
         column.addWidget(self.pages)
 
     def open_page(self, name: str) -> None:
-        """Show one page, the window in front."""
+        """Show the manual's page called `name`, with the window in front."""
         self.pages.open_page(name)
         self.show()
         self.raise_()

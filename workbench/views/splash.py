@@ -34,7 +34,7 @@ class Splash(QWidget):
             QGuiApplication.processEvents(QEventLoop.ProcessEventsFlag.AllEvents, _LISTEN_MS)
 
     def finish(self) -> None:
-        """Close the splash screen: the window is there."""
+        """Close the splash screen, as the window is shown."""
         self.close()
         self.deleteLater()
 

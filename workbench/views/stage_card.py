@@ -57,7 +57,7 @@ class StageCard(QFrame):
         steady: bool = False,
         verdict: VerdictKind = "",
     ) -> None:
-        """Show the stage: title, sentence, tips, primary button and verdict.
+        """Show the title, the sentence, the buttons' tooltips or reasons, the primary button, and a verdict.
 
         Parameters
         ----------

@@ -18,7 +18,7 @@ ROOM_PX = 2
 
 
 def time_left(seconds: float | None) -> str:
-    """Write the time left of a job in words; "" while it is not known."""
+    """Write in words how much time a job still needs; "" while that is not known."""
     return "" if seconds is None else tr("about {time} left", time=in_words(seconds))
 
 
@@ -85,7 +85,7 @@ class TaskBar(QWidget):
         self.hide()
 
     def begin(self, label: str) -> None:
-        """Show a job that has started."""
+        """Show the bar for the job called `label`, which has started."""
         self._label.setText(label)
         self._bar.setRange(0, 0)
         self._left.setText("")
@@ -96,7 +96,7 @@ class TaskBar(QWidget):
         self.show()
 
     def progress(self, label: str, stage: str, share: float | None, left: str) -> None:
-        """Show the stage of the job, the share that is done (None: unknown), and the time left in words."""
+        """Show the job's stage, its share done (None: not known), and the time left in words."""
         self._label.setText(named(label, stage) if stage else label)
         if share is None:
             self._bar.setRange(0, 0)
@@ -108,11 +108,11 @@ class TaskBar(QWidget):
         self._left.setText(left)
 
     def cancelling(self) -> None:
-        """Show that Cancel was pressed."""
+        """Show that the job is being cancelled."""
         enable(self.cancel, tr("Stopping …"), "")
         self._left.setText(tr("stopping …"))
 
     def end(self) -> None:
-        """Hide the bar: the job is over."""
+        """Hide the bar, as the job has ended."""
         self._clock.stop()
         self.hide()

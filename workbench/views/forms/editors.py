@@ -78,13 +78,13 @@ class NumberEditor(SpinBox):
         self._told = self.content()
 
     def content(self) -> float | int | None:
-        """Return the number; None for none."""
+        """Return the number entered; None if the field is empty."""
         if self._none_text is not None and self.value() < self._least - 1e-12 * max(1.0, abs(self._least)):
             return None
         return round(self.value()) if self._whole else self.value()
 
     def set_content(self, value: object) -> None:
-        """Show a number without emitting."""
+        """Show a number, or none for None, without emitting a signal."""
         if value == self._told and (self.hasFocus() or self._stepping.isActive()):
             return  # it may be half typed
         self._stepping.stop()
@@ -145,11 +145,11 @@ class TextEditor(QLineEdit):
         self.editingFinished.connect(self._tell)
 
     def content(self) -> str:
-        """Return the text."""
+        """Return the text entered."""
         return self.text()
 
     def set_content(self, value: object) -> None:
-        """Show a text without emitting; its beginning is visible."""
+        """Show a text from its beginning, without emitting a signal."""
         if value == self._told and self.hasFocus():
             return  # it may be half typed
         self._told = str(value)
@@ -184,11 +184,11 @@ class MultilineEditor(QPlainTextEdit):
         self.setFixedHeight(_LINES * self.fontMetrics().lineSpacing() + margins + 8)
 
     def content(self) -> str:
-        """Return the text."""
+        """Return the text entered."""
         return self.toPlainText()
 
     def set_content(self, value: object) -> None:
-        """Show a text without emitting."""
+        """Show a text of several lines, without emitting a signal."""
         if value == self._told and self.hasFocus():
             return  # it may be half typed
         self._told = str(value)
@@ -204,7 +204,7 @@ class MultilineEditor(QPlainTextEdit):
             self.emit_if_changed()
 
     def emit_if_changed(self) -> None:
-        """Emit the text if it has changed."""
+        """Emit the text if it differs from the one emitted or set last."""
         if self.toPlainText() != self._told:
             self._told = self.toPlainText()
             self.committed.emit()
@@ -225,11 +225,11 @@ class ChoiceEditor(Choice):
         self._told: object = self.content()
 
     def content(self) -> object:
-        """Return the value chosen."""
+        """Return the value of the choice that is selected."""
         return self._values[self.currentIndex()] if self._values else None
 
     def set_content(self, value: object) -> None:
-        """Show a choice without emitting; a value that is none of them changes nothing."""
+        """Select the choice with this value, without emitting a signal; another value changes nothing."""
         if value in self._values:
             self.setCurrentIndex(self._values.index(value))
         self._told = self.content()
@@ -250,11 +250,11 @@ class CheckEditor(QCheckBox):
         self.clicked.connect(lambda _: self.committed.emit())
 
     def content(self) -> bool:
-        """Return whether it is checked."""
+        """Return whether the box is checked."""
         return self.isChecked()
 
     def set_content(self, value: object) -> None:
-        """Show yes or no without emitting."""
+        """Check or uncheck the box, without emitting a signal."""
         self.setChecked(bool(value))
 
 

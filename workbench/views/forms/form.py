@@ -45,7 +45,7 @@ class SettingsForm(QWidget):
     # ---- making it
 
     def add_section(self, title: str) -> None:
-        """Add a heading over the settings that follow."""
+        """Add a heading above the settings that are added after it."""
         heading = QLabel(title)
         heading.setObjectName("heading")
         heading.setWordWrap(True)
@@ -53,21 +53,21 @@ class SettingsForm(QWidget):
         self._grid.addWidget(heading, self._grid.rowCount(), 0, 1, 2)
 
     def add_number(self, key: str, label: str, within: NumberRange, help: str = "", *, tip: str = "") -> None:
-        """Add a number; an int, if it has no decimals."""
+        """Add a field for a number within a range; an int if the range has no decimals."""
         editor = NumberEditor(within)
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help, tip)
 
     def add_text(self, key: str, label: str, help: str = "", *, placeholder: str = "", tip: str = "") -> None:
-        """Add one line of text."""
+        """Add a field for one line of text."""
         self._add(key, label, TextEditor(placeholder), help, tip, wide=True)
 
     def add_multiline(self, key: str, label: str, help: str = "") -> None:
-        """Add several lines of text."""
+        """Add a field for several lines of text."""
         self._add(key, label, MultilineEditor(), help, wide=True)
 
     def add_choice(self, key: str, label: str, choices: Sequence[tuple[object, str]], help: str = "") -> None:
-        """Add a choice of one of several (value, text)."""
+        """Add a field to choose one of several values; `choices` are pairs (value, displayed text)."""
         editor = ChoiceEditor(list(choices))
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help)
@@ -79,11 +79,11 @@ class SettingsForm(QWidget):
     # ---- using it
 
     def values(self) -> dict[str, object]:
-        """Return the present values, by key."""
+        """Return the values of all fields, by key."""
         return {key: editor.content() for key, editor in self._editors.items()}
 
     def set_values(self, values: Mapping[str, object]) -> None:
-        """Show values without emitting; keys the form does not have are ignored.
+        """Show values in the fields with these keys, without emitting; unknown keys are ignored.
 
         An editor in which the user is typing is left alone unless its value is to be another than it was.
         """
@@ -92,24 +92,24 @@ class SettingsForm(QWidget):
                 editor.set_content(values[key])
 
     def set_editable(self, key: str, editable: bool, why: str = "") -> None:
-        """Enable or disable a setting; the tooltip then gives the reason."""
+        """Enable or disable the field with this key; `why` is the tooltip while it is disabled."""
         self._editors[key].setEnabled(editable)
         self._editors[key].setToolTip(self._tips[key] if editable or not why else why)
 
     def set_complaint(self, key: str, sentence: str) -> None:
-        """Show in place of the help what is wrong with a value; "" restores the help."""
+        """Show under a field, instead of its help, what is wrong with its value; "" shows the help again."""
         if self._complaints.get(key, "") != sentence:
             self._complaints[key] = sentence
             self._show_help(key)
 
     def ask(self, key: str, sentence: str) -> None:
-        """Ask in place of the help for a value that is not set yet; "" restores the help."""
+        """Show under a field, instead of its help, that its value is needed; "" shows the help again."""
         if self._questions.get(key, "") != sentence:
             self._questions[key] = sentence
             self._show_help(key)
 
     def editor(self, key: str) -> QWidget:
-        """Return the editor of a setting.
+        """Return the editor of the field with this key.
 
         Raises
         ------
@@ -119,11 +119,11 @@ class SettingsForm(QWidget):
         return self._editors[key]
 
     def editors(self) -> tuple[QWidget, ...]:
-        """Return all editors, from top to bottom."""
+        """Return the editors of all fields, from top to bottom."""
         return tuple(self._editors.values())
 
     def help_of(self, key: str) -> str:
-        """Return the text under a setting: its help, or the complaint, or the question."""
+        """Return the text shown under a field: its help, a complaint, or what is asked for."""
         return self._complaints.get(key) or self._questions.get(key) or self._helps[key][1]
 
     def changeEvent(self, event: QEvent) -> None:

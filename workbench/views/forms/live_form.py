@@ -57,7 +57,7 @@ class DeviceField(QWidget):
         self.box.setToolTip(tip)
 
     def show_devices(self, kind: SourceKind, chosen: str, devices: Sequence[SourceInfo], looking: bool) -> None:
-        """Show the devices there are, and the one that is chosen."""
+        """Show the list of devices of a kind of source and the one chosen; `looking`: the search still runs."""
         self._is_folder = kind.is_folder
         self.box.blockSignals(True)
         self.box.clear()
@@ -116,7 +116,7 @@ class NumberField(SpinBox):
         self.valueChanged.connect(lambda value: self.edited.emit(None if value <= self._nothing else value))
 
     def limit(self, limits: tuple[float, float] | None) -> None:
-        """Set the range to that of the camera; None: to that of any camera."""
+        """Limit the numbers to what the camera allows; None: to what any camera may allow."""
         low, high = limits or self._usual
         self.blockSignals(True)
         self._nothing = low - 10 ** -self.decimals()
@@ -124,7 +124,7 @@ class NumberField(SpinBox):
         self.blockSignals(False)
 
     def show_value(self, value: float | None) -> None:
-        """Show a number, or that there is none."""
+        """Show a number; None shows "as it is", which leaves the setting to the source."""
         self.blockSignals(True)
         self.setValue(self._nothing if value is None else value)
         self.blockSignals(False)
@@ -142,7 +142,7 @@ class ChoiceField(Choice):
         self.activated.connect(lambda _: self.edited.emit(self.currentData()))
 
     def show_choices(self, choices: Sequence[str], chosen: str | None) -> None:
-        """Offer these choices, and the one that is chosen already."""
+        """Show the words to choose from, and the chosen one; None is "as it is"."""
         wanted = [None, *choices, *([chosen] if chosen and chosen not in choices else [])]
         if wanted != [self.itemData(place) for place in range(self.count())]:
             self.clear()
@@ -162,7 +162,7 @@ class RegionField(QLineEdit):
         self.editingFinished.connect(self._finished)
 
     def show_region(self, region: Region | None, sensor: tuple[int, int] | None) -> None:
-        """Show a region, or that there is none; `sensor` is (width, height), as far as it is known."""
+        """Show the part of the sensor that is read, or "as it is" for None; `sensor` is (width, height) in px."""
         shown = "" if region is None else f"{region.left} {region.top} {region.width} {region.height}"
         whole = tr("as it is")
         self.setPlaceholderText(whole if sensor is None else f"{whole} (0 0 {sensor[0]} {sensor[1]})")
@@ -196,7 +196,7 @@ class SourceForm(QWidget):
         self._connect()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show kind, device and settings of the live source."""
         live, settings = self.live, self.live.settings
         running = live.running
         self.kind.setCurrentIndex(max(self.kind.findData(settings.kind), 0))

@@ -59,7 +59,7 @@ class LivePanel(QWidget):
         QApplication.beep()
 
     def refresh(self) -> None:
-        """Show the state of the presenter."""
+        """Show the state of the live source, and which of its buttons are enabled."""
         live = self.live
         running = live.running
         self.form.refresh()
@@ -97,7 +97,7 @@ class LivePanel(QWidget):
         self.show_counts()
 
     def set_primary(self, primary: bool) -> None:
-        """Set whether Start is the page's one primary button now."""
+        """Set whether Start is shown as the page's primary button."""
         if self.start.property("primary") != primary:
             self.start.setProperty("primary", primary)
             self.start.style().unpolish(self.start)
@@ -108,7 +108,7 @@ class LivePanel(QWidget):
         self.show_counts()
 
     def show_counts(self) -> None:
-        """Show the state and the numbers of pictures."""
+        """Show the recording's state, and how many pictures were recorded and lost."""
         self.state.setText(self.live.state_text())
         self.counts.setText(self.live.counts_text())
         self.state.setVisible(self.live.running)
@@ -168,7 +168,7 @@ class LivePanel(QWidget):
 
 
 def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
-    """Ask whether another recording that runs is to be stopped for that of `live`."""
+    """Ask whether to stop the recording of another page, and if so start that of `live`."""
     answers = [tr("Stop it and start here"), tr("Leave it running")]
     if ask.ask(parent, tr("Live source"), question, answers) == 0:
         live.start(stop_other=True)
@@ -204,7 +204,7 @@ class LiveStrip(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the present request and what is wrong."""
+        """Show what the recording asks the user to do, and faults of the source."""
         sentence, button = self.live.question
         self.answer.setText(button)
         self._ask.say(sentence if self._asks else "")

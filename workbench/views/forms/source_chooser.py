@@ -74,15 +74,15 @@ class SourceChooser(QWidget):
 
     @property
     def mode(self) -> str:
-        """Source shown: "folder" or "live"."""
+        """Kind of source that is shown: "folder" or "live"."""
         return "live" if self.live.isChecked() else "folder"
 
     def set_mode(self, mode: str) -> None:
-        """Show the folder or the live source."""
+        """Show the fields for a folder, or for the live source."""
         self._modes.button(1 if mode == "live" else 0).setChecked(True)
 
     def set_folder(self, folder: Path | None, detail: str = "") -> None:
-        """Show the folder in use and a sentence about it ("24 pictures")."""
+        """Show the folder in use (None: none) and a sentence about it, as "24 pictures"."""
         if folder is not None:
             self._folder = folder
         self.path.setText(breakable(str(folder)) if folder is not None else tr("No folder is chosen yet."))
@@ -90,13 +90,13 @@ class SourceChooser(QWidget):
         self.detail.setText(detail or ("" if folder is not None else tr("Choose a folder, or drop one here.")))
 
     def choose(self) -> None:
-        """Ask for the folder."""
+        """Ask for a folder, and emit the one chosen."""
         folder = ask.choose_folder(self, self._what, self._folder)
         if folder is not None:
             self.folder_chosen.emit(folder)
 
     def next_action(self, live: Any) -> NextAction:
-        """Make the button that starts the live source, if that is shown, or chooses a folder.
+        """Make the button to show where there are no pictures: start the live source, or choose a folder.
 
         `live` is its LivePresenter.
         """
@@ -105,7 +105,7 @@ class SourceChooser(QWidget):
         return NextAction(tr("Choose folder …"), self.choose, "")
 
     def accept_drops_on(self, widget: QWidget) -> None:
-        """Accept folders that are dropped on `widget`."""
+        """Accept folders that are dropped on `widget` as if they were chosen."""
         widget.setAcceptDrops(True)
         widget.installEventFilter(self)
 
@@ -137,7 +137,7 @@ class SourceChooser(QWidget):
 
 
 def dropped_folder(event: QDropEvent | QDragEnterEvent) -> Path | None:
-    """Return the folder that is dropped, or the one a dropped file is in."""
+    """Return the folder that is dropped, or that of a dropped file; None for a project or recording set."""
     paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
     if not paths or (paths[0] / "project.json").exists() or (paths[0] / "rig.toml").exists():
         return None  # a project or a whole recording set: the window opens it

@@ -33,7 +33,7 @@ class Announcement(QLabel):
         self.hide()
 
     def set_text(self, sentence: str) -> None:
-        """Show a sentence, or "" to show none any more."""
+        """Show a sentence for a while, after the one shown now; "" shows none."""
         stood_ms = 1000 * (time.monotonic() - self._since)
         if sentence == self.text() and not self.isHidden():
             self._waiting = ""
@@ -45,7 +45,7 @@ class Announcement(QLabel):
             self._clock.start(round(STAYS_MS - stood_ms))
 
     def place(self) -> None:
-        """Move to the top of the picture, in its middle."""
+        """Move the announcement to the top of the picture, in its middle."""
         width = self._picture.width()
         self.setFixedWidth(min(round(_SHARE * width), self.fontMetrics().horizontalAdvance(self.text()) + 48))
         self.adjustSize()

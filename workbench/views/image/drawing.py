@@ -43,15 +43,13 @@ class Draft:
     pencil: tuple[float, float] | None = None
 
     def add(self, u: float, v: float, pixel: float) -> None:
-        """Add a corner, or the next point of the stroke; a screen pixel is `pixel` wide. The same place twice is
-        once.
-        """
+        """Add (u, v) as a corner or the stroke's next point, unless it repeats; `pixel` is a screen pixel's width."""
         step = (_LASSO_STEP if self.kind == "lasso" else _SAME_PLACE) * pixel
         if not self.corners or np.hypot(self.corners[-1][0] - u, self.corners[-1][1] - v) > step:
             self.corners.append((u, v))
 
     def outline(self) -> Points:
-        """Return the corners (N, 2)."""
+        """Return the corners (N, 2) of the region drawn so far, in picture pixels."""
         return np.array(self.corners, dtype=np.float64).reshape(-1, 2)
 
 
@@ -103,27 +101,27 @@ class DrawingTool(QObject):
 
     @property
     def draft(self) -> Draft | None:
-        """Region being drawn."""
+        """Region being drawn; None if none is."""
         return self._layer.draft
 
     @property
     def lasso(self) -> bool:
-        """Whether a stroke is to be drawn, rather than corners clicked."""
+        """Whether the region is drawn as one stroke, instead of by clicked corners."""
         return self.draft is not None and self.draft.kind == "lasso"
 
     def start(self, name: str, kind: Literal["polygon", "lasso"]) -> None:
-        """Start a region; one being drawn is cancelled."""
+        """Start drawing a region called `name`; a region being drawn is cancelled."""
         self.stop()
         self._layer.draft = Draft(name, kind)
         self.active_changed.emit(True)
 
     def stop(self) -> None:
-        """End drawing without a result."""
+        """End drawing without a region."""
         if (draft := self._end()) is not None:
             self.cancelled.emit(draft.name)
 
     def finish(self) -> None:
-        """Close the region if it has enough corners; a stroke that has not starts again."""
+        """Close the region if it has at least FEWEST_CORNERS corners; a shorter stroke is begun again."""
         if self.draft is None:
             return
         if len(self.draft.corners) >= FEWEST_CORNERS:
@@ -135,25 +133,25 @@ class DrawingTool(QObject):
             self._layer.update()
 
     def add(self, place: QPointF) -> None:
-        """Add a corner, or the next point of the stroke."""
+        """Add a corner, or the next point of the stroke, at `place` in picture pixels."""
         if self.draft is not None:
             self.draft.add(place.x(), place.y(), self._box.pixel)
             self._layer.update()
 
     def take_back(self) -> None:
-        """Remove the last corner."""
+        """Remove the last corner of the region being drawn."""
         if self.draft is not None and self.draft.corners:
             self.draft.corners.pop()
             self._layer.update()
 
     def hover(self, place: QPointF | None) -> None:
-        """Move the pencil to a place."""
+        """Move the pencil to `place` in picture pixels; None hides it."""
         if self.draft is not None:
             self.draft.pencil = None if place is None else (place.x(), place.y())
             self._layer.update()
 
     def key(self, event: QKeyEvent) -> bool:
-        """Handle a key; False if it has no meaning. Arrows move it, Space sets a corner."""
+        """Handle a key while drawing; False if it has no meaning. Arrows move the pencil, Space sets a corner."""
         if self.draft is None:
             return False
         key = Qt.Key(event.key())

@@ -36,7 +36,7 @@ class LayerStack(QObject):
         return iter(sorted(self._layers, key=self._order.__getitem__))
 
     def put(self, name: str, layer: Layer) -> None:
-        """Show a layer instead of the one of that name."""
+        """Add a layer called `name`, in place of an earlier one of that name."""
         if (old := self._layers.pop(name, None)) is not None:
             self._box.removeItem(old)
         self._layers[name] = layer
@@ -46,41 +46,41 @@ class LayerStack(QObject):
         self.changed.emit()
 
     def remove(self, name: str) -> None:
-        """Remove a layer; none of that name is no error."""
+        """Remove the layer called `name`, if there is one."""
         if (layer := self._layers.pop(name, None)) is not None:
             self._box.removeItem(layer)
             self.changed.emit()
 
     def clear(self) -> None:
-        """Remove all layers; hidden names are remembered."""
+        """Remove all layers; which names are hidden is remembered."""
         for layer in self._layers.values():
             self._box.removeItem(layer)
         self._layers = {}
         self.changed.emit()
 
     def set_visible(self, name: str, visible: bool) -> None:
-        """Show or hide a layer, now and when it is set anew."""
+        """Show or hide the layer called `name`, also when it is put again later."""
         (self._hidden.discard if visible else self._hidden.add)(name)
         if name in self._layers:
             self._layers[name].setVisible(visible)
         self.changed.emit()
 
     def is_visible(self, name: str) -> bool:
-        """Whether a layer is to be shown."""
+        """Whether the layer called `name` is to be shown."""
         return name not in self._hidden
 
     def legend(self) -> list[tuple[str, KeySign, ColourLike]]:
-        """Return title, sign and colour of the layers shown that have a title."""
+        """Return title, sign and colour of each layer that is shown and has a title."""
         shown = (self._layers[name] for name in self if self.is_visible(name))
         return [(layer.title, *layer.key) for layer in shown if layer.title]
 
     def points(self) -> Points:
-        """Return all points (N, 2) of the layers of points that are shown."""
+        """Return the points (N, 2), in picture pixels, of all point layers that are shown."""
         shown = (self._layers[name] for name in self if self.is_visible(name))
         return np.concatenate([np.zeros((0, 2)), *(layer.uv for layer in shown if isinstance(layer, PointsLayer))])
 
     def point_at(self, u: float, v: float) -> tuple[str, int] | None:
-        """Find the topmost layer with a point at (u, v), and the point's number."""
+        """Find the topmost layer with a point at (u, v); return its name and the point's index, or None."""
         for name in reversed(list(self)):
             if self.is_visible(name):
                 index = self._layers[name].point_at(u, v, self._box.pixel)
@@ -89,7 +89,7 @@ class LayerStack(QObject):
         return None
 
     def tip_at(self, u: float, v: float) -> str:
-        """Return the tip of the topmost point there that has one."""
+        """Return the tooltip of the topmost point at (u, v) that has one; "" if there is none."""
         for name in reversed(list(self)):
             layer = self._layers[name]
             index = layer.point_at(u, v, self._box.pixel) if self.is_visible(name) else None
@@ -98,7 +98,7 @@ class LayerStack(QObject):
         return ""
 
     def grip_at(self, u: float, v: float) -> tuple[str, Grip] | None:
-        """Find the editable region that can be dragged from there, and its part."""
+        """Find the editable region that can be dragged at (u, v); return its name and the part, or None."""
         for name in reversed(list(self)):
             layer = self._layers[name]
             if isinstance(layer, PolygonLayer) and self.is_visible(name):
@@ -130,7 +130,7 @@ class Legend(QWidget):
         self.hide()
 
     def set_entries(self, entries: Sequence[tuple[str, KeySign, ColourLike]]) -> None:
-        """Set title, sign and colour of each entry; nothing is done when nothing has changed."""
+        """Set the legend's entries: title, sign and colour of each."""
         wanted = [(title, sign, to_rgba(colour)) for title, sign, colour in entries]
         if wanted != self._entries:
             self._entries = wanted
@@ -140,7 +140,7 @@ class Legend(QWidget):
 
     @property
     def titles(self) -> list[str]:
-        """Titles of its entries."""
+        """Titles of the legend's entries."""
         return [title for title, _, _ in self._entries]
 
     def sizeHint(self) -> QSize:
@@ -170,7 +170,7 @@ class Legend(QWidget):
 
 @lru_cache(maxsize=256)
 def key_pixmap(sign: KeySign, rgba: Rgba, ratio: float) -> QPixmap:
-    """Draw a sign for a legend."""
+    """Draw the sign of a legend's entry as a pixmap."""
     pixmap = QPixmap(round(KEY_WIDTH * ratio), round(KEY_HEIGHT * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
@@ -204,7 +204,7 @@ class LayersMenu(QMenu):
         self.aboutToShow.connect(self.fill)
 
     def fill(self) -> None:
-        """List the layers that have a title."""
+        """Fill the menu with the layers that have a title."""
         self.clear()
         for name in self._layers:
             if not self._layers[name].title:

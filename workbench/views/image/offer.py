@@ -31,7 +31,7 @@ class Offer(QFrame):
         self.hide()
 
     def set_offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
-        """Offer `do` by a sentence and a button; "" ends the offer."""
+        """Show a sentence and a button that calls `do`; "" hides the offer."""
         self._do = do
         self.setVisible(bool(sentence))
         if (sentence, button) != (self.label.text(), self.button.text()):
@@ -40,7 +40,7 @@ class Offer(QFrame):
             self.place()
 
     def place(self) -> None:
-        """Move to the top of the picture, in its middle."""
+        """Move the offer to the top of the picture, in its middle."""
         width = self._picture.width()
         words = self.label.fontMetrics().horizontalAdvance(self.label.text())
         self.setFixedWidth(min(round(_SHARE * width), words + self.button.sizeHint().width() + 60))

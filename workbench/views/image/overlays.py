@@ -25,7 +25,7 @@ _NEAR_PX = 40.0
 def draw_label(
     painter: QPainter, at: QPointF, text: str, colour: QColor = TEXT, *, within: QWidget | None = None
 ) -> None:
-    """Draw a text about a place of the screen, on a dark plate; `painter` has no transform.
+    """Draw a text on a dark plate about the screen place `at`; the painter must have no transform.
 
     With `within` a label that would lie partly outside that widget is moved inside; one farther away is left there.
     """
@@ -70,15 +70,15 @@ class Layer(QGraphicsItem):
 
     @property
     def key(self) -> tuple[KeySign, ColourLike]:
-        """Sign and colour for the legend."""
+        """Sign and colour that stand for this layer in the legend."""
         return "line", EXCLUDED
 
     def point_at(self, u: float, v: float, pixel: float) -> int | None:
-        """Find the index of the point at (u, v), None where there is none; a screen pixel is `pixel` wide there."""
+        """Find the index of the layer's point at (u, v); None if none is there. `pixel` is a screen pixel's width."""
         return None
 
     def tip(self, index: int) -> str:
-        """Return the tip of a point."""
+        """Return the tooltip of the layer's point number `index`; "" if it has none."""
         return ""
 
     def boundingRect(self) -> QRectF:
@@ -139,19 +139,19 @@ class PointsLayer(Layer):
 
 
 def as_points(uv: ArrayLike) -> Points:
-    """Convert any points to (N, 2); nothing gives (0, 2)."""
+    """Convert points to an array (N, 2); an empty sequence gives (0, 2)."""
     return np.asarray(uv, dtype=np.float64).reshape(-1, 2)
 
 
 def on_screen(transform: QTransform, uv: Points) -> Points:
-    """Convert points of the picture to points of the screen, (N, 2)."""
+    """Transform points (N, 2) of the picture to points (N, 2) of the screen."""
     turn = np.array([[transform.m11(), transform.m12()], [transform.m21(), transform.m22()]])
     mapped: Points = uv @ turn + [transform.dx(), transform.dy()]
     return mapped
 
 
 def cosmetic(rgba: tuple[int, int, int, int], width: float, widget: QWidget | None) -> QPen:
-    """Make a pen of constant width on the screen, whatever the zoom. Qt counts its width in the screen's own pixels."""
+    """Make a pen whose width on the screen does not depend on the zoom."""
     pen = QPen(to_colour(rgba), width * (1.0 if widget is None else widget.devicePixelRatioF()))
     pen.setCosmetic(True)
     return pen
@@ -357,11 +357,11 @@ class PolygonLayer(Layer):
 
     @property
     def middle(self) -> QPointF:
-        """Handle of the whole region: the mean of its corners."""
+        """Mean of the region's corners, where the handle that drags the whole region is."""
         return QPointF(*self.uv.mean(axis=0)) if len(self.uv) else QPointF()
 
     def grip_at(self, u: float, v: float, pixel: float) -> Grip | None:
-        """Find the part of the region that can be dragged from (u, v), where a screen pixel is `pixel` wide."""
+        """Find the part of the region that can be dragged at (u, v), a corner or the whole; None if none."""
         if not self.editable or not len(self.uv):
             return None
         distance = np.hypot(self.uv[:, 0] - u, self.uv[:, 1] - v)
@@ -372,7 +372,7 @@ class PolygonLayer(Layer):
         return "whole" if np.hypot(middle.x() - u, middle.y() - v) <= _GRIP_REACH_PX * pixel else None
 
     def drag(self, grip: Grip, du: float, dv: float) -> None:
-        """Move a corner or the whole."""
+        """Move one corner, or the whole region, by (du, dv) picture pixels."""
         chosen = slice(None) if grip == "whole" else grip
         self.uv[chosen] += (du, dv)
         self.update()

@@ -33,14 +33,14 @@ class PictureItem(QGraphicsItem):
 
     @property
     def rect(self) -> QRectF:
-        """Extent of the picture in full-resolution pixels."""
+        """Rectangle that the picture covers, in full-resolution pixels."""
         if self.picture is None:
             return QRectF()
         rows, columns = self.picture.shape[:2]
         return QRectF(-0.5, -0.5, columns * self.scale_factor, rows * self.scale_factor)
 
     def set_picture(self, picture: NDArray[Any] | None, scale: float, levels: tuple[float, float] | None) -> None:
-        """Show an array; see `ImageView.set_picture`.
+        """Show an array as the picture; None shows none. `scale`: full-resolution pixels per array pixel.
 
         Raises
         ------
@@ -58,14 +58,14 @@ class PictureItem(QGraphicsItem):
             self._render()
 
     def set_tone(self, gain: float, gamma: float) -> None:
-        """Set the tone: grey · gain, then to the power 1/gamma."""
+        """Set how grey levels are shown: grey · gain, then to the power 1/gamma."""
         if (gain, gamma) != (self.gain, self.gamma):
             self.gain, self.gamma = gain, gamma
             if self.picture is not None:
                 self._render()
 
     def value_at(self, u: float, v: float) -> str:
-        """Return the value of the pixel at (u, v) as text, "" outside."""
+        """Return the value of the picture's pixel at (u, v) as text; "" outside."""
         if self.picture is None:
             return ""
         column, row = (int(np.floor((x + 0.5) / self.scale_factor)) for x in (u, v))
@@ -78,7 +78,7 @@ class PictureItem(QGraphicsItem):
         return f"{value:.3g}" if value.dtype.kind == "f" else str(int(value))
 
     def image(self) -> QImage:
-        """Return the picture as it is shown, full size."""
+        """Return the picture with its tone, in full size."""
         return _wrapped(self._shown[0]).convertToFormat(QImage.Format.Format_RGB32) if self._shown else QImage()
 
     def boundingRect(self) -> QRectF:
@@ -194,18 +194,18 @@ class PictureBox(pg.ViewBox):  # type: ignore[misc]
         return float(self.viewRect().width() / width) if width > 0 else 1.0
 
     def fit(self) -> None:
-        """Show the whole picture."""
+        """Zoom so that the whole picture is shown."""
         if not self.extent.isEmpty():
             self.setRange(self.extent, padding=_MARGIN)
 
     def show_at_zoom(self, screen_pixels: float, centre: QPointF | None = None) -> None:
-        """Make a picture pixel this many screen pixels wide, about a place (or the middle)."""
+        """Zoom so that a picture pixel is `screen_pixels` wide, with `centre` (None: the middle) in the middle."""
         middle = self.viewRect().center() if centre is None else centre
         width, height = self.width() / screen_pixels, self.height() / screen_pixels
         self.setRange(QRectF(middle.x() - width / 2, middle.y() - height / 2, width, height), padding=0)
 
     def zoom_by(self, factor: float, about: QPointF | None = None) -> None:
-        """Enlarge about a place (or the middle)."""
+        """Enlarge by `factor` about the place `about`; None: about the middle."""
         if self.extent.isEmpty() or self.width() <= 0:
             return
         zoom = 1.0 / self.pixel
@@ -215,7 +215,7 @@ class PictureBox(pg.ViewBox):  # type: ignore[misc]
         self.zoomed.emit()
 
     def pan_by(self, right: float, down: float) -> None:
-        """Move the view by screen pixels."""
+        """Move the view by screen pixels to the right and down."""
         self._move(right * self.pixel, down * self.pixel)
 
     def wheelEvent(self, event: QGraphicsSceneWheelEvent, axis: int | None = None) -> None:

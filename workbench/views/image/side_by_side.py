@@ -39,11 +39,11 @@ class PaneTitle(QWidget):
         self.show_maximised(maximised=False)
 
     def add(self, widget: QWidget) -> None:
-        """Add a page's own widget beside the button."""
+        """Add a widget of the page to the title line, beside the button."""
         self._row.insertWidget(self._row.count() - 1, widget)
 
     def show_maximised(self, *, maximised: bool) -> None:
-        """Set the text of the button."""
+        """Set the text of the button: to maximise the view, or to show all views again."""
         tip = (
             tr("Show both views again (or double-click the title)")
             if maximised
@@ -69,7 +69,7 @@ class SideBySide(QSplitter):
         self._main: int | None = None
 
     def add_view(self, title: str, view: QWidget) -> PaneTitle:
-        """Add a view at the right end."""
+        """Add a view with a title at the right end, and return its title line."""
         head, pane = PaneTitle(title), QWidget()
         in_column(head, (view, 1), on=pane, margins=(0 if not self._panes else GAP, 0, GAP, 0), spacing=3)
         place = len(self._panes)
@@ -83,23 +83,23 @@ class SideBySide(QSplitter):
 
     @property
     def alone(self) -> int | None:
-        """Place of the view that has all the room, or None."""
+        """Index of the view that is shown alone; None if all are shown."""
         return self._alone
 
     def show_alone(self, place: int | None) -> None:
-        """Give the view at this place all the room; None shows all."""
+        """Show only the view with the index `place`; None shows all views."""
         self._alone = place
         for index, (head, pane) in enumerate(self._panes):
             pane.setVisible(place is None or index == place)
             head.show_maximised(maximised=index == place)
 
     def show_main(self, place: int | None) -> None:
-        """Give most of the room to the view at this place, and keep it so; None: to all alike."""
+        """Give most of the width to the view with the index `place`; None gives all views the same."""
         self._main = place
         self._share_out()
 
     def show_next(self) -> None:
-        """Give most of the room to the view after the main one."""
+        """Give most of the width to the view after the one that has it now."""
         if self._main is not None:
             self.show_main((self._main + 1) % len(self._panes))
 

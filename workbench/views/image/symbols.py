@@ -18,7 +18,7 @@ _STROKE = 1.6
 
 @lru_cache(maxsize=512)
 def symbol_pixmap(symbol: Symbol, rgba: tuple[int, int, int, int], size: float, ratio: float) -> QPixmap:
-    """Draw a symbol `size` screen pixels wide, in the middle of a pixmap with that device pixel ratio."""
+    """Draw a point symbol, `size` screen pixels wide, as a pixmap with the device pixel ratio `ratio`."""
     side = round((size + 5) * ratio)
     pixmap = QPixmap(side, side)
     pixmap.fill(Qt.GlobalColor.transparent)
@@ -32,7 +32,7 @@ def symbol_pixmap(symbol: Symbol, rgba: tuple[int, int, int, int], size: float, 
 
 
 def draw_symbol(painter: QPainter, symbol: Symbol, colour: QColor, size: float) -> None:
-    """Draw a symbol about the painter's origin."""
+    """Draw a point symbol, `size` wide, about the painter's origin."""
     shape = _shape(symbol, size / 2)
     filled = symbol == "."
     rim = QColor(RIM)

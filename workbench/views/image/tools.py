@@ -50,12 +50,12 @@ class ToolStrip(QFrame):
             self._row.addWidget(button)
 
     def add_tool(self, widget: QWidget) -> None:
-        """Add a widget before the buttons."""
+        """Add a widget to the strip under the picture, before its buttons."""
         self._row.insertWidget(self._place_for_tools, widget)
         self._place_for_tools += 1
 
     def set_layers_tip(self, titles: Sequence[str]) -> None:
-        """List the layers in the tip of their menu; nothing where the legend lists them."""
+        """List the layers' titles in the tooltip of the layers button; [] lists none."""
         self.layers.setToolTip("\n".join((self.layers.accessibleName(), *titles)))
 
     def _button(self, symbol: str, tip: str) -> QToolButton:
@@ -107,11 +107,11 @@ class ToneMenu(QMenu):
 
     @property
     def values(self) -> tuple[float, float]:
-        """Values of gain and gamma."""
+        """Gain and gamma that the sliders are set to."""
         return 2.0 ** (self.gain.value() / _STEPS), 2.0 ** (self.gamma.value() / _STEPS)
 
     def reset(self) -> None:
-        """Reset to the tone of the picture."""
+        """Reset both sliders, so that the picture is shown as it is."""
         self.gain.setValue(0)
         self.gamma.setValue(0)
 

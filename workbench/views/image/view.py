@@ -104,7 +104,7 @@ class ImageView(QWidget):
         scale: float = 1.0,
         levels: tuple[float, float] | None = None,
     ) -> None:
-        """Show a picture (rows, columns) of uint8, uint16, float or bool, or (rows, columns, 3) of uint8.
+        """Show a picture: (rows, columns) of uint8, uint16, float or bool, or (rows, columns, 3) of uint8.
 
         `scale` is how many full-resolution pixels one pixel of a reduced picture is wide. `levels` are the values of
         black and white; by default those of the type, of the camera's bits, or of the values of a float picture. The
@@ -127,7 +127,7 @@ class ImageView(QWidget):
     def clear(
         self, message: str = "", button: str = "", on_button: Callable[[], None] | None = None, why_not: str = ""
     ) -> None:
-        """Show no picture and no layer but a sentence in the middle, with a button if one is named (`EmptyState`)."""
+        """Remove picture and layers, and show a sentence instead, with a button if `button` is its text."""
         self._drawing.stop()
         self._layers.clear()
         self._picture.set_picture(None, 1.0, None)
@@ -141,48 +141,48 @@ class ImageView(QWidget):
         self._arrange()
 
     def announce(self, sentence: str) -> None:
-        """Show a sentence large in the picture, for two seconds at least; "": none, nor beside an offer."""
+        """Show a sentence large over the picture, for two seconds at least; "" shows none, nor beside an offer."""
         self._announcement.set_text(sentence if self.offered.isHidden() else "")
 
     def offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
-        """Offer an action over the picture, by a sentence and a button; "" ends the offer."""
+        """Show a sentence over the picture with a button that calls `do`; "" hides it."""
         self.offered.set_offer(sentence, button, do)
 
     @property
     def announced(self) -> str:
-        """Sentence shown large in the picture."""
+        """Sentence that is shown in large letters over the picture; "" if none is."""
         return "" if self._announcement.isHidden() else self._announcement.text()
 
     @property
     def has_picture(self) -> bool:
-        """Whether there is a picture."""
+        """Whether a picture is shown, not the sentence in its place."""
         return self._picture.picture is not None
 
     @property
     def empty_state(self) -> EmptyState:
-        """Sentence and button shown without a picture."""
+        """Widget with the sentence and button that are shown without a picture."""
         return self._empty
 
     # ---- the view
 
     def fit(self) -> None:
-        """Show the whole picture, also after the window changes its size."""
+        """Zoom so that the whole picture is shown, also after the view is resized."""
         self._fitted = True
         self._box.fit()
 
     def one_to_one(self) -> None:
-        """Show one pixel of the picture on one of the screen."""
+        """Zoom so that one pixel of the picture covers one pixel of the screen."""
         self._fitted = False
         self._box.show_at_zoom(1.0 / self.devicePixelRatioF())
 
     def centre_on(self, u: float, v: float) -> None:
-        """Bring a place into the middle."""
+        """Move the view so that the place (u, v) is in its middle."""
         self._fitted = False
         self._box.show_at_zoom(1.0 / self._box.pixel, QPointF(u, v))
 
     @property
     def fitted(self) -> bool:
-        """Whether the whole picture is shown."""
+        """Whether the view is zoomed so that the whole picture is shown."""
         return self._fitted
 
     @property
@@ -191,7 +191,7 @@ class ImageView(QWidget):
         return self.devicePixelRatioF() / self._box.pixel
 
     def to_screen(self, u: float, v: float) -> QPoint:
-        """Convert a place of the picture to one in `canvas`."""
+        """Convert a place (u, v) of the picture to a point of the widget `canvas`."""
         place = self._box.mapViewToScene(QPointF(u, v))
         return QPoint(round(place.x()), round(place.y()))
 
@@ -203,25 +203,25 @@ class ImageView(QWidget):
 
     @property
     def readout(self) -> str:
-        """Text on the pixel under the mouse."""
+        """Text on place and value of the pixel under the mouse."""
         return self._strip.readout.text()
 
     def add_tool(self, widget: QWidget) -> None:
-        """Add a page's own widget in the strip under the picture."""
+        """Add a widget of the page to the strip under the picture."""
         self._strip.add_tool(widget)
 
     def set_legend_visible(self, visible: bool) -> None:
-        """Show or hide the key of colours and symbols."""
+        """Show or hide the legend of colours and symbols."""
         self._layers_menu.legend_shown = visible
         self._show_legend()
 
     @property
     def legend_titles(self) -> list[str]:
-        """Titles in the legend; empty while it is hidden."""
+        """Titles of the legend's entries; [] while the legend is hidden."""
         return [] if self._legend.isHidden() else self._legend.titles
 
     def set_tone(self, gain: float, gamma: float) -> None:
-        """Set the tone on the screen: grey · gain, then to the power 1/gamma."""
+        """Set how grey levels are shown: grey · gain, then to the power 1/gamma."""
         self._picture.set_tone(gain, gamma)
 
     # ---- layers
@@ -237,7 +237,7 @@ class ImageView(QWidget):
         tips: Sequence[str] | None = None,
         title: str = "",
     ) -> None:
-        """Show points (N, 2); `colour` for all or (N, 3 or 4) uint8."""
+        """Show the layer `name` of points (N, 2) in px; `colour` is one for all, or (N, 3 or 4) uint8."""
         self._layers.put(name, PointsLayer(uv, colour, symbol, size, tips, title))
 
     def set_lines(
@@ -252,7 +252,7 @@ class ImageView(QWidget):
         labels: Sequence[str] | None = None,
         title: str = "",
     ) -> None:
-        """Lines, each (N, 2): one colour for all, a list of one each, or by a value at each point.
+        """Show the layer `name` of polylines (N, 2) in px, coloured alike, one by one, or by `values` at the points.
 
         `values` are coloured as σ between `limits`; above them and NaN are grey. NaN in a line leaves a gap. `labels`
         stand at the start of each line.
@@ -269,11 +269,11 @@ class ImageView(QWidget):
         factor: float,
         title: str = "",
     ) -> None:
-        """Show arrows from uv (N, 2) to uv + factor · d_uv."""
+        """Show the layer `name` of arrows from `uv` (N, 2) to `uv` + `factor` · `d_uv`, in px."""
         self._layers.put(name, VectorsLayer(uv, d_uv, factor, RESIDUAL, title))
 
     def set_cells(self, name: str, grid: ArrayLike, colour: ColourLike = COVERED, *, title: str = "") -> None:
-        """Tint the cells of a grid (rows, columns) over the whole picture where it is True."""
+        """Show the layer `name` of a grid (rows, columns) over the whole picture, tinted where it is True."""
         self._layers.put(name, CellsLayer(grid, colour, lambda: self._box.extent, title))
 
     def set_polygon(
@@ -286,28 +286,28 @@ class ImageView(QWidget):
         title: str = "",
         label: str = "",
     ) -> None:
-        """A closed region (N, 2); with `editable` its corners, and all of it by its middle, can be dragged.
+        """Show the layer `name` of a closed region (N, 2) in px, whose corners can be dragged if `editable`.
 
         One with a `label`, which stands below it, is dashed: it is offered, and not what counts.
         """
         self._layers.put(name, PolygonLayer(uv, colour, editable, title, label))
 
     def remove_layer(self, name: str) -> None:
-        """Remove a layer; none of that name is no error."""
+        """Remove the layer called `name`, if there is one."""
         self._layers.remove(name)
 
     def clear_layers(self) -> None:
-        """Remove all layers."""
+        """Remove all layers over the picture."""
         self._layers.clear()
 
     def layer_names(self) -> tuple[str, ...]:
-        """List the layers from the lowest to the topmost."""
+        """List the names of the layers, from the lowest to the topmost."""
         return tuple(self._layers)
 
     # ---- drawing
 
     def start_polygon(self, name: str) -> None:
-        """Start drawing: click corners; double-click or Enter closes, Backspace removes one, Esc cancels.
+        """Start drawing a region called `name` by clicks at its corners; double click or Enter closes it.
 
         By keys alone: arrows move the pencil (with Shift in leaps), Space sets a corner.
         """
@@ -315,12 +315,12 @@ class ImageView(QWidget):
         self.setFocus()
 
     def start_lasso(self, name: str) -> None:
-        """Start drawing round a region with the button held down."""
+        """Start drawing a region called `name` by one stroke round it, the mouse button held down."""
         self._drawing.start(name, "lasso")
         self.setFocus()
 
     def stop_drawing(self) -> None:
-        """End drawing without a result; nothing being drawn is no error."""
+        """End drawing without a region, if one is being drawn."""
         self._drawing.stop()
 
     # ---- events

@@ -41,7 +41,7 @@ class ChecksCard(QFrame):
         self.hide()
 
     def show_checks(self, checks: Sequence[Check]) -> None:
-        """Show these checks."""
+        """Show a row for each check: its mark, name and sentence."""
         if tuple(checks) != self._checks:
             self._checks = tuple(checks)
             self._show()
@@ -49,7 +49,7 @@ class ChecksCard(QFrame):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Sentences of all checks."""
+        """Sentence of each check that is shown."""
         return tuple(said.text() for _, _, said in self._rows[: len(self._checks)])
 
     def _show(self) -> None:

@@ -141,32 +141,32 @@ class DataTable(QWidget):
         in_column(self.table, on=self)
 
     def let_shrink(self, column: int) -> None:
-        """Give one column the room that the others leave, cut where that is too little: its tip tells it whole."""
+        """Give the column `column` the width that the others leave; texts that are cut are in tooltips."""
         self._shrinking, header = True, self.table.horizontalHeader()
         header.setStretchLastSection(False)
         header.setMinimumSectionSize(LEAST_PX)
         header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
 
     def show_rows(self, most: int) -> None:
-        """Set the height for all the rows there are now, or for at most so many."""
+        """Set the table's height for all present rows, or for at most `most` of them."""
         table = self.table
         rows = min(self._model.rowCount(), most) * table.verticalHeader().defaultSectionSize()
         table.setMinimumHeight(table.horizontalHeader().sizeHint().height() + rows + 2 * table.frameWidth())
 
     def whole_width(self) -> int:
-        """Return the width in px at which all columns are whole, beside the scroll bar."""
+        """Return the width in px at which no column is cut, the scroll bar included."""
         table, header = self.table, self.table.horizontalHeader()
         columns = range(len(self._model.titles))
         wanted = sum(max(table.sizeHintForColumn(one), header.sectionSizeHint(one)) for one in columns)
         return wanted + 2 * table.frameWidth() + table.verticalScrollBar().sizeHint().width()
 
     def set_headers(self, headers: Sequence[Header]) -> None:
-        """Set the columns; rows shown before are removed."""
+        """Set the columns with their headers; all rows are removed."""
         titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]
         self._model.set_titles(titles, [tip[0] if tip else "" for _, _, *tip in headers])
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None = None) -> None:
-        """Set rows of texts, as many as there are columns; `tips` one a row. The chosen row and the scrolling are kept.
+        """Set the rows, a text for each column, and a tooltip for each row; selection and scrolling are kept.
 
         Raises
         ------
@@ -181,19 +181,19 @@ class DataTable(QWidget):
             self.table.horizontalHeader().setStretchLastSection(not self._model.ends_with_numbers)
 
     def rows(self) -> tuple[tuple[str, ...], ...]:
-        """Return the present texts."""
+        """Return the texts of all rows."""
         return tuple(tuple(row) for row in self._model.rows)
 
     def current_row(self) -> int:
-        """Return the current row, −1 for none."""
+        """Return the index of the current row; −1 if there is none."""
         return self.table.currentIndex().row()
 
     def set_current_row(self, row: int) -> None:
-        """Make a row the current one; −1 for none."""
+        """Make the row with this index the current one; −1 for none."""
         self.table.setCurrentIndex(self._model.index(row, 0))
 
     def copied(self) -> str:
-        """Return the text for Ctrl+C: the chosen rows, or all if none is chosen, with the headers.
+        """Return what Ctrl+C copies: headers, then the selected rows, or all rows, separated by tabs.
 
         No text is a formula.
         """

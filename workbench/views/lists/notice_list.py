@@ -57,7 +57,7 @@ class NoticeList(QWidget):
         self._list.selectionModel().currentChanged.connect(self._show)
 
     def add(self, level: str, text: str, details: str, when: str) -> None:
-        """Append a message and show it."""
+        """Append a message to the list and scroll to it."""
         symbol, colour = SYMBOLS[level]
         row = TreeRow(str(len(self._notices)), (Cell(f"{when}   {text}", icon=icon(symbol, colour=colour)),))
         self._notices.append((row, text, details))
@@ -65,7 +65,7 @@ class NoticeList(QWidget):
         self._list.setCurrentIndex(self._model.index_of(row.key))
 
     def count(self) -> int:
-        """Return the number of messages."""
+        """Return how many messages the list has."""
         return len(self._notices)
 
     def _show(self, index: QModelIndex) -> None:
@@ -109,7 +109,7 @@ class Banner(QFrame):
         self.hide()
 
     def show_notice(self, level: str, text: str, details: str) -> None:
-        """Show a message."""
+        """Show a message across the top of the page, in place of an earlier one."""
         self._level, self._text, self._more = level, text, details
         self._label.setText(text)
         self._copy.setVisible(bool(details))
@@ -118,7 +118,7 @@ class Banner(QFrame):
         self._place()
 
     def text(self) -> str:
-        """Return the message shown."""
+        """Return the message that the banner shows."""
         return self._text if not self.isHidden() else ""
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

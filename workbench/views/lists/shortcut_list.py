@@ -39,5 +39,5 @@ class ShortcutList(QDialog):
 
 
 def native(keys: str) -> str:
-    """Write keys as on this system and in the window's language: "Left, Ctrl+M" is "Links, Strg+M"."""
+    """Write keys as this system and the window's language name them: "Left, Ctrl+M" is "Links, Strg+M"."""
     return re.sub(r"[^\s,…]+", lambda key: QKeySequence(key[0]).toString(QKeySequence.SequenceFormat.NativeText), keys)

@@ -54,7 +54,7 @@ class StepRail(QFrame):
         self._show_badges(self._badges)
 
     def set_narrow(self, narrow: bool) -> None:
-        """Show icons alone, whose tips tell the titles; or icons with titles."""
+        """Show the steps' icons only, with the titles as tooltips, or, with False, icons and titles."""
         if narrow == self._narrow:
             return
         self._narrow = narrow
@@ -67,11 +67,11 @@ class StepRail(QFrame):
         QTimer.singleShot(0, self, self.updateGeometry)
 
     def set_current(self, name: str) -> None:
-        """Mark the step whose page is shown."""
+        """Mark the step called `name` as the one whose page is shown."""
         self._buttons[name].setChecked(True)
 
     def set_states(self, states: Mapping[str, tuple[str, str]]) -> None:
-        """Set for each step its state (a key of BADGES) and the sentence that explains it."""
+        """Set the state of each step, a key of BADGES, and the sentence on it, by the step's name."""
         others = [name for name, (state, _) in states.items() if state != self._states[name]]
         for name, (state, sentence) in states.items():
             self._states[name] = state
@@ -81,7 +81,7 @@ class StepRail(QFrame):
         self._show_badges(others)
 
     def state_of(self, name: str) -> str:
-        """Return the state shown for a step."""
+        """Return the state that is shown for the step called `name`."""
         return self._states[name]
 
     def _set_tips(self) -> None:

@@ -60,7 +60,7 @@ class TreeModel(QAbstractItemModel):
         self._next = count(_TOP + 1)
 
     def set_rows(self, rows: Sequence[TreeRow]) -> None:
-        """Set the rows: known ones are updated, others are added or removed."""
+        """Set the rows: rows with a known key are updated in place, others are added or removed."""
         before, now = [row.key for row in self._rows], [row.key for row in rows]
         first = _alike(before, now)
         last = _alike(before[first:][::-1], now[first:][::-1])
@@ -93,14 +93,14 @@ class TreeModel(QAbstractItemModel):
             self.dataChanged.emit(self.index(0, 0, above), self.index(now - 1, last, above))
 
     def key(self, index: _Index) -> str:
-        """Return the key of the row that an index is of, or is below; "" for an invalid index."""
+        """Return the key of the top-level row that an index belongs to; "" for an invalid index."""
         if not index.isValid():
             return ""
         above = index.parent()
         return self._rows[above.row() if above.isValid() else index.row()].key
 
     def index_of(self, key: str) -> QModelIndex:
-        """Return the index of the row of this key; an invalid one if there is none."""
+        """Return the index of the row with this key; an invalid index if there is none."""
         return next((self.index(number, 0) for number, row in enumerate(self._rows) if row.key == key), QModelIndex())
 
     # ---- what Qt asks
@@ -150,7 +150,7 @@ class TreeModel(QAbstractItemModel):
         return cell.more.get(role)
 
     def setData(self, index: _Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
-        """Emit that a tick or another text is requested; it is shown once `set_rows` has it."""
+        """Emit that the user wants a tick or a text changed; shown once `set_rows` brings it."""
         if role == Qt.ItemDataRole.EditRole:
             self.edited.emit(self.key(index), str(value))
             return True
@@ -194,13 +194,13 @@ class TreeList(QTreeView):
         return self._rows.key(self.indexAt(at))
 
     def set_rows(self, rows: Sequence[TreeRow]) -> None:
-        """Show these rows."""
+        """Show these rows; the rows below them are unfolded."""
         self._showing = True
         self._rows.set_rows(rows)
         self._showing = False
 
     def choose(self, key: str) -> None:
-        """Mark a row and no other, or none, for "" and what is not there; a row below it stays as it is."""
+        """Select the row with this key and no other; "" or an unknown key selects none."""
         self._showing = True
         if self._rows.key(self.currentIndex()) != key:
             self.setCurrentIndex(self._rows.index_of(key))

@@ -69,7 +69,7 @@ class ValueRows(QWidget):
         self._fold()
 
     def set_rows(self, rows: Sequence[ValueRow], more: Sequence[ValueRow] = ()) -> None:
-        """Set rows of (label, text with unit, tip, level) each, from the top, and those that are folded."""
+        """Set rows of (label, text with unit, tooltip, level); the rows `more` are folded below them."""
         self._rows, self._in_sight = (*rows, *more), len(rows)
         while len(self._labels) < len(self._rows):
             self._add_row()
@@ -87,7 +87,7 @@ class ValueRows(QWidget):
         self.more.setToolTip(tr("What an auditor and a metrologist want to know of it as well"))
 
     def text_of(self, label: str) -> str:
-        """Return the value shown beside a label, "" if there is none."""
+        """Return the text beside a label; "" if there is no such row."""
         return next((text for name, text, _, _ in self._rows if name == label), "")
 
     def minimumSizeHint(self) -> QSize:
@@ -161,14 +161,14 @@ class Verdict(QFrame):
         self.set_verdict("")
 
     def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
-        """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
+        """Show a verdict with a sentence; "" shows that there is none: no tolerance, or not measured."""
         self._kind = kind
         set_text(self._detail, detail)
         self._show()
 
     @property
     def text(self) -> str:
-        """Word that is shown."""
+        """Word of the verdict that is shown."""
         return self._word.text()
 
     def changeEvent(self, event: QEvent) -> None:

@@ -88,16 +88,16 @@ class RowsModel(QAbstractTableModel):
 
     @property
     def rows(self) -> Sequence[ListRow]:
-        """Present rows."""
+        """Rows of the model, as they are sorted now."""
         return self._rows
 
     def set_headers(self, what: str, value: str) -> None:
-        """Set the titles of both columns."""
+        """Set the titles of the two columns."""
         self._headers = (what, value)
         self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, 1)
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
-        """Replace all rows; if they are the same ones in the same order, only their texts change."""
+        """Replace all rows; rows with the same names in the same order only change their texts."""
         before = [row.name for row in self._rows]
         self._given = tuple(rows)
         self.largest = max((row.value for row in rows if row.value is not None and np.isfinite(row.value)), default=0.0)
@@ -113,14 +113,14 @@ class RowsModel(QAbstractTableModel):
             self.endResetModel()
 
     def set_used(self, row: int, used: bool) -> None:
-        """Check or uncheck a row."""
+        """Check or uncheck the box of the row with this index."""
         new = replace(self._rows[row], used=used)
         self._rows[row] = new
         self._given = tuple(new if given.name == new.name else given for given in self._given)
         self.dataChanged.emit(self.index(row, 0), self.index(row, 1))
 
     def row_of(self, name: str) -> int:
-        """Return the place of a row, −1 if it is not there."""
+        """Return the index of the row called `name`; −1 if there is none."""
         return self._places.get(name, -1)
 
     def rowCount(self, parent: _Index = QModelIndex()) -> int:  # noqa: B008
@@ -313,7 +313,7 @@ class RowDelegate(QStyledItemDelegate):
 
 
 def row_height(metrics: QFontMetrics) -> int:
-    """Return the height of two lines of text, or a thumbnail."""
+    """Return the height of a row in px: two lines of text or a thumbnail, whichever is higher."""
     return max(2 * metrics.height() + 2 * _PAD, THUMBNAIL.height() + 6)
 
 
@@ -407,7 +407,7 @@ class ViewList(QWidget):
         in_column(self.table, on=self)
 
     def set_headers(self, what: str, value: str) -> None:
-        """Set the titles of both columns: the items, and the value with its unit."""
+        """Set the titles of the two columns: the items, and the value with its unit."""
         self.model.set_headers(what, value)
         self.table.setAccessibleName(what)
         header = self.table.horizontalHeader()
@@ -416,7 +416,7 @@ class ViewList(QWidget):
         header.resizeSection(1, min(max(needed, _NARROWEST), _WIDEST))
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
-        """Show rows. Which are chosen, which is current, and the scrolling are kept."""
+        """Show these rows; selection, current row and scrolling are kept."""
         chosen, current = self.chosen(), self.current()
         scrolled = self.table.verticalScrollBar().value()
         before = [row.name for row in self.model.rows]
@@ -431,23 +431,23 @@ class ViewList(QWidget):
         self._tell_current()
 
     def rows(self) -> tuple[ListRow, ...]:
-        """Return the present rows."""
+        """Return all rows of the list."""
         return tuple(self.model.rows)
 
     def current(self) -> str:
-        """Return the name of the current row, "" for none."""
+        """Return the name of the current row; "" if there is none."""
         index = self.table.currentIndex()
         return self.model.rows[index.row()].name if index.isValid() else ""
 
     def set_current(self, name: str) -> None:
-        """Make a row the current one without emitting; a name that is not there changes nothing."""
+        """Make the row called `name` the current one, without emitting; an unknown name changes nothing."""
         place = self.model.row_of(name)
         if place >= 0 and name != self.current():
             self._told = name
             self.table.setCurrentIndex(self.model.index(place, 0))
 
     def chosen(self) -> tuple[str, ...]:
-        """Return the names of the selected rows."""
+        """Return the names of the rows that are selected."""
         return tuple(self.model.rows[index.row()].name for index in self.table.selectionModel().selectedRows())
 
     def changeEvent(self, event: QEvent) -> None:

@@ -45,11 +45,11 @@ class PageSheet(QWidget):
 
     @property
     def is_sharp(self) -> bool:
-        """Whether the page is scaled well at its present size."""
+        """Whether the page is drawn with smooth scaling at its present size."""
         return self._sharp is not None and self._sharp.size() == self._wanted()
 
     def sharpen(self) -> None:
-        """Scale the page well: some ten milliseconds."""
+        """Draw the page with smooth scaling, which takes some ten milliseconds."""
         wanted, ratio = self._wanted(), self.devicePixelRatioF()
         mode = Qt.TransformationMode.SmoothTransformation
         self._sharp = QPixmap.fromImage(self._image.scaled(wanted, Qt.AspectRatioMode.IgnoreAspectRatio, mode))
@@ -57,13 +57,13 @@ class PageSheet(QWidget):
         self.update()
 
     def set_width(self, width: int) -> None:
-        """Set the width, in the page's proportions."""
+        """Set the width of the page in px; the height follows in proportion."""
         size = QSize(width, round(width * self._image.height() / self._image.width()))
         if size != self.size():
             self.setFixedSize(size)
 
     def set_dim(self, dim: bool) -> None:
-        """Set whether the page is out of date."""
+        """Dim the page, as it is out of date, or show it normally."""
         if dim != self._dim:
             self._dim = dim
             self.update()
@@ -133,7 +133,7 @@ class PageScroll(QWidget):
         self._dress()
 
     def set_pages(self, pages: Sequence[NDArray[np.uint8]]) -> None:
-        """Show pages (h, w, 3) of red, green, blue; the place looked at stays."""
+        """Show pages (h, w, 3) RGB one below the other; the scroll position is kept."""
         place = self._scroll.verticalScrollBar().value()
         for sheet in self.sheets:
             self._column.removeWidget(sheet)
@@ -149,11 +149,11 @@ class PageScroll(QWidget):
         self._sharpen.start(0)
 
     def set_message(self, text: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
-        """Set the sentence shown where there are no pages, and a button if something can be done about it."""
+        """Set the sentence, and the button if any, that are shown while there are no pages."""
         self._empty.set_text(text, button, on_button)
 
     def set_note(self, text: str) -> None:
-        """Show over the pages why they are out of date, and dim them; "" when they are not."""
+        """Dim the pages and show over them why they are out of date; "" shows them normally."""
         if text != self._note.text() or bool(text) == self._note.isHidden():
             set_text(self._note, text)
             self._place_note()
@@ -162,20 +162,20 @@ class PageScroll(QWidget):
 
     @property
     def note(self) -> str:
-        """Note over the pages."""
+        """Note over the pages on why they are out of date; "" if they are not."""
         return self._note.text()
 
     @property
     def message(self) -> str:
-        """Sentence where there are no pages, "" where there are some."""
+        """Sentence shown because there are no pages; "" if there are some."""
         return "" if self.sheets else self._empty.message
 
     def count(self) -> int:
-        """Return the number of pages."""
+        """Return how many pages are shown."""
         return len(self.sheets)
 
     def zoom(self, factor: float) -> None:
-        """Make the pages larger or smaller; 0 fits them to the room again. What is in the middle stays there."""
+        """Enlarge the pages by `factor`, with the same place in the middle; 0 fits them to the width."""
         bar = self._scroll.verticalScrollBar()
         middle = (bar.value() + bar.pageStep() / 2) / max(self._inside.height(), 1)
         self._zoom = min(max(self._zoom * factor, LEAST_ZOOM), MOST_ZOOM) if factor else 1.0

@@ -62,7 +62,7 @@ class BarsWithThreshold(Plot):
         self._column.setContentsMargins(1, 1, 1, 1)
 
     def set_bars(self, bars: Sequence[Bar], *, label: str, unit: str, threshold: float | None = None) -> None:
-        """Show bars; without a threshold there is no line."""
+        """Show a bar for each view, with a line at `threshold` that can be dragged; None: no line."""
         self._bars, self._label, self._unit = tuple(bars), label, unit
         self._threshold = threshold
         if not self._bars:
@@ -71,14 +71,14 @@ class BarsWithThreshold(Plot):
         self._redraw()
 
     def set_current(self, name: str) -> None:
-        """Mark a bar; a name that is not there marks none."""
+        """Mark the bar called `name`; an unknown name marks none."""
         if name != self._current:
             self._current = name
             self._redraw()
 
     @property
     def threshold(self) -> float | None:
-        """Value of the threshold."""
+        """Value of the threshold in the bars' unit; None without a line."""
         return self._threshold
 
     def clear(self, message: str = "") -> None:

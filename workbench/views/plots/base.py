@@ -45,7 +45,7 @@ class Axis(pg.AxisItem):  # type: ignore[misc]
         return [numeral(text) for text in super().tickStrings(values, scale, spacing)]
 
     def generateDrawSpecs(self, painter: QPainter) -> Any:
-        """Draw all numbers with equal decimals; pyqtgraph gives those between the coarse ones more."""
+        """Prepare the axis for drawing, all its numbers with equal decimals (called by pyqtgraph)."""
         specs = super().generateDrawSpecs(painter)
         if specs is None:
             return None
@@ -113,7 +113,7 @@ class Plot(QWidget):
         self.clear()
 
     def clear(self, message: str = "") -> None:
-        """Show only a sentence."""
+        """Remove what is plotted, and show a sentence instead."""
         if self._canvas is not None:
             self._item.clear()
             self._show_axes(False)
@@ -122,21 +122,21 @@ class Plot(QWidget):
 
     @property
     def empty_state(self) -> EmptyState:
-        """Sentence and button shown while there is no plot."""
+        """Widget with the sentence that is shown while there is no plot."""
         return self._empty
 
     @property
     def canvas(self) -> QWidget:
-        """Widget on which the plot is drawn, which takes the mouse."""
+        """Widget on which the plot is drawn, and which takes the mouse."""
         return self._field if self._canvas is None else self._canvas.viewport()
 
     def to_screen(self, x: float, y: float) -> QPointF:
-        """Convert a place of the plot to one in `canvas`."""
+        """Convert a place (x, y) of the plot to a point of the widget `canvas`."""
         place: QPointF = self._box.mapViewToScene(QPointF(x, y))
         return place
 
     def axis_text(self, side: str) -> str:
-        """Return the text of an axis: "left", "bottom"."""
+        """Return the text of the axis at a side, "left" or "bottom"."""
         return self._labels.get(side, "")
 
     def changeEvent(self, event: QEvent) -> None:
@@ -255,21 +255,21 @@ class Plot(QWidget):
 
 
 def small_font() -> QFont:
-    """Make the font of ticks and words in plots."""
+    """Make the font for numbers and words in plots."""
     font = QFont(QGuiApplication.font())
     font.setPixelSize(_TICK_PIXELS)
     return font
 
 
 def tinted(colour: str, alpha: int) -> QColor:
-    """Make a colour transparent, 0 … 255."""
+    """Return a colour, given by name or hex text, with the opacity `alpha`, 0 … 255."""
     tint = QColor(colour)
     tint.setAlpha(alpha)
     return tint
 
 
 def written(value: float, step: float) -> str:
-    """Write a value with as many decimals as a step of this size needs, and a true minus."""
+    """Write a value with as many decimals as numbers `step` apart need, and a true minus sign."""
     decimals = 0
     while decimals < 9 and step < 0.999 * 10.0**-decimals:
         decimals += 1

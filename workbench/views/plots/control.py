@@ -46,7 +46,7 @@ class ControlPlot(Plot):
         axes: tuple[str, str],
         unit: str = "mm",
     ) -> None:
-        """Values (N,) in `unit`, whether each is good, what is said of each.
+        """Show values (N,) in `unit` in time order, flags `good` (N,), a tooltip each, and the limits.
 
         `limits` are lower, centre and upper; `axes` what stands at the left and below.
         """

@@ -37,14 +37,14 @@ class LineChart(Plot):
         super().__init__(parent)
 
     def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str, *, from_zero: bool = False) -> None:
-        """Name both axes and their units; the upward one begins at zero where there is nothing below."""
+        """Set the names and units of both axes; `from_zero`: the upward axis begins at zero if no value is below."""
         self._names, self._from_zero = (x_label, x_unit, y_label, y_unit), from_zero
         self._redraw()
 
     def set_curve(
         self, name: str, x: ArrayLike, y: ArrayLike, *, colour: ColourLike = "", title: str = "", points: bool = False
     ) -> None:
-        """Set a curve, instead of the one of that name; NaN leaves a gap. `title` stands in the legend."""
+        """Set the curve called `name`, x and y (N,); NaN leaves a gap. `title` is its text in the legend."""
         across, up = (np.asarray(values, dtype=np.float64).reshape(-1) for values in (x, y))
         self._curves[name] = _Curve(across, up, colour, title, points)
         self._redraw()

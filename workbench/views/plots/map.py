@@ -32,7 +32,7 @@ class ColourBar(QWidget):
         self.setFixedWidth(64)
 
     def set_scale(self, colours: NDArray[np.uint8], limits: tuple[float, float], title: str) -> None:
-        """Set colours (K, 3) from low to high, their limits, and their title."""
+        """Show the colours (K, 3), uint8, of values from the lower to the upper of `limits`, under a title."""
         self._colours, self._limits, self.title = colours, limits, title
         self.setToolTip(title)
         self.setAccessibleName(title)
@@ -92,7 +92,7 @@ class HeatMap(Plot):
         unit: str,
         colour_map: MapName = "viridis",
     ) -> None:
-        """Set values (rows, columns) over a picture of `size` (width, height) in px; row 0 is at the top."""
+        """Show values (rows, columns) over a picture of `size` (width, height) in px; row 0 is at the top."""
         self._values = np.asarray(values, dtype=np.float64)
         finite = self._values[np.isfinite(self._values)]
         if self._values.ndim != 2 or not finite.size:

@@ -60,7 +60,7 @@ class Meter(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def set_value(self, value: float | None, text: str = "") -> None:
-        """Place the needle; `text` is the value with its unit, "" if its zone says enough. None or NaN: no needle."""
+        """Move the needle to a value and show `text`, the value with its unit; None or NaN hides the needle."""
         if value is not None and math.isnan(value):
             value = None
         if (value, text) != (self._value, self._text):
@@ -70,18 +70,18 @@ class Meter(QWidget):
 
     @property
     def level(self) -> Level:
-        """Level of the zone the needle is in."""
+        """Level, as "good", of the zone that the needle is in."""
         if self._value is None:
             return ""
         return next((level for end, level in self._zones if self._value <= end), self._zones[-1][1])
 
     @property
     def value_text(self) -> str:
-        """Value and its zone in words."""
+        """Text of the value and the name of the zone it is in."""
         return " · ".join(part for part in (self._text, self._names.get(self.level, "")) if part) or "–"
 
     def share(self, value: float) -> float:
-        """Compute the place of a value on the scale, 0 … 1; values beyond the ends are at the ends."""
+        """Compute the place of a value on the scale, from 0 at its lower end to 1 at its upper end."""
         low, high = self._minimum, self._zones[-1][0]
         value = min(max(value, low), high)
         if self._logarithmic:
@@ -149,7 +149,7 @@ class Steady(QObject):
         self._clock.timeout.connect(self._show)
 
     def show(self, said: Any, *, at_once: bool = False) -> None:
-        """Show a value: now where it may not wait or the last has been shown long enough, else later."""
+        """Show a value now if `at_once` or the last one was shown for a second, else when that second is over."""
         self._wanted = said
         if said == self.now:
             self._clock.stop()
@@ -162,7 +162,7 @@ class Steady(QObject):
             self._clock.start(math.ceil(left))
 
     def wait_no_longer(self) -> None:
-        """Drop the waiting value, as the widget is hidden."""
+        """Drop the value that waits to be shown, as the widget is hidden."""
         self._clock.stop()
 
     def _show(self) -> None:
@@ -191,12 +191,12 @@ class HintBar(QFrame):
         self._dress()
 
     def set_hints(self, hints: Sequence[str]) -> None:
-        """Set the present hints, the most important first."""
+        """Set the hints on what to do now, the most important one first."""
         self._steady.show(tuple(hints), at_once=not self._steady.now)
 
     @property
     def text(self) -> str:
-        """Hint that is shown."""
+        """Hint that is shown; "" if none is."""
         return self._label.text()
 
     def changeEvent(self, event: QEvent) -> None:

@@ -57,7 +57,7 @@ class ResidualPlot(Plot):
         rms: float | None = None,
         counted: ArrayLike | None = None,
     ) -> None:
-        """Residuals (N, 2) in px at places uv (N, 2) of a picture of `size` (width, height).
+        """Show residuals (N, 2) in px at places `uv` (N, 2) of a picture of `size` (width, height) in px.
 
         `rms` is the radius of the circle in the scatter; `counted` (N,) is False for points left out.
         """
@@ -79,7 +79,7 @@ class ResidualPlot(Plot):
 
     @property
     def factor_used(self) -> int:
-        """Factor by which the vectors are enlarged."""
+        """Factor by which the residuals are drawn enlarged."""
         if chosen := int(self.factor.currentData()):
             return chosen
         typical = float(np.percentile(np.hypot(*self._residuals.T), 90)) if len(self._residuals) else 0.0
@@ -147,7 +147,7 @@ class ResidualPlot(Plot):
         self._box.setRange(QRectF(-reach, -reach, 2 * reach, 2 * reach), padding=0.02)
 
     def set_kind(self, scatter: bool) -> None:
-        """Choose what is shown, as the user can."""
+        """Show the residuals as a scatter plot, or, with False, as arrows over the picture."""
         with QSignalBlocker(self.kind):
             self.kind.setCurrentIndex(int(scatter))
         self._redraw()

@@ -65,7 +65,7 @@ class RunChart(Plot):
         tolerance: float | None = None,
         k: float = 2.0,
     ) -> None:
-        """Values (N,) and U (N,) in mm; `tolerance` is the half width about `nominal`, `labels` name the scans."""
+        """Show repeats `values` (N,) with ±`U` (N,) in mm in order, and lines for mean, nominal and tolerance."""
         measured = np.asarray(values, dtype=np.float64).reshape(-1)
         names = tuple(labels) if labels is not None else tuple(str(i) for i in range(1, len(measured) + 1))
         if not len(measured):
@@ -167,7 +167,7 @@ class Histogram(Plot):
         bins: int | None = None,
         limits: Sequence[tuple[float, str]] = (),
     ) -> None:
-        """Set values (N,), NaN left out; `limits` are (value, text) of lines across."""
+        """Show the histogram of the finite values (N,); `limits` are (value, text) of vertical lines."""
         all_values = np.asarray(values, dtype=np.float64).reshape(-1)
         self._values = all_values[np.isfinite(all_values)]
         self._label, self._unit, self._bins, self._limits = label, unit, bins, tuple(limits)

@@ -28,7 +28,7 @@ class ToleranceBar(QWidget):
         dress(self, f"font-size: {text_px}px;")
 
     def set_scale(self, scale: ToleranceScale | None, colour: str) -> None:
-        """Show a result in a colour of the theme; nothing where there is no tolerance."""
+        """Show a result on its tolerance scale in a colour of the theme; None, no tolerance, shows nothing."""
         self._scale, self._colour = scale, colour
         self.setAccessibleName("" if scale is None else scale.deviation_text(Words(chosen())))
         self.update()

@@ -96,11 +96,11 @@ class SceneButtons(QToolBar):
         self.dress()
 
     def action(self, name: str) -> QAction:
-        """Return the action of a button: a view's name, "fit", "parallel", "grid", "save"."""
+        """Return the action of the button called `name`: of a standard view, "fit", "parallel", "grid" or "save"."""
         return self._actions[name]
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
-        """Add a checkable button of the page that shows the view, before the others; `symbol` names its icon."""
+        """Add a checkable button, with a key and an icon, before the other buttons; return its action."""
         if self._tools_end is None:
             self._tools_end = self.insertSeparator(self._actions["front"])
         action = self._add(symbol, text, key, checkable=True)
@@ -110,7 +110,7 @@ class SceneButtons(QToolBar):
         return action
 
     def dress(self) -> None:
-        """Draw the icons in the colours of the palette."""
+        """Draw the icons of all buttons in the colours of the theme."""
         role = QPalette.ColorRole
         palette = QGuiApplication.palette()  # the bar's own is told of a new theme after the view it belongs to
         text, accent = palette.color(role.WindowText), palette.color(role.Highlight)

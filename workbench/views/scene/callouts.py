@@ -38,7 +38,7 @@ ICON_PX, INSET_PX = 13.0, 5.0
 
 
 def plate_sizes(callouts: Sequence[Callout], font: QFont) -> Array:
-    """Compute width and height (N, 2) of their plates in logical pixels."""
+    """Compute width and height (N, 2) of the callouts' text plates, in logical pixels."""
     metrics = QFontMetricsF(small_font(font))
     sizes = [
         (
@@ -58,7 +58,7 @@ def plate_sizes(callouts: Sequence[Callout], font: QFont) -> Array:
 def lay_out(
     places: Array, sizes: Array, moved: Sequence[tuple[float, float] | None], room: QRectF, kept: Sequence[QRectF]
 ) -> list[QRectF]:
-    """Place the plates, all in logical pixels, so that their lines do not cross.
+    """Choose the rectangles of callouts' plates within `room`, so that their lines to `places` do not cross.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def _line_end(at: QPointF, plate: QRectF) -> QPointF:
 def paint_callouts(
     painter: QPainter, shown: Sequence[tuple[Callout, QPointF, QRectF]], colours: OverlayColours
 ) -> None:
-    """Paint the callouts, each with its place on the screen and its plate: lines below all plates."""
+    """Paint callouts, each as text plate, line, and place on the screen; all lines are below all plates."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for _, at, plate in shown:
         for pen in (QPen(colours.ground, 3.5), QPen(colours.text, 1.2)):

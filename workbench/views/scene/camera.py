@@ -38,22 +38,22 @@ class Orientation:
 
     @classmethod
     def of(cls, frame: ViewFrame) -> Orientation:
-        """Make the orientation of a frame: up is z and north y; in the camera's frame both are reversed."""
+        """Make the orientation of a view frame: up is its z and north its y; both reversed in the camera's frame."""
         _, y, z = frame.axes if frame.kind is not FrameKind.CAMERA else -frame.axes
         return cls(z, y, frame.pose_camera_frame.translation)
 
     @property
     def east(self) -> Array:
-        """Unit vector (3,) to the right in the front view and in the view from above."""
+        """Unit vector (3,) that points to the right in the front view."""
         return np.cross(self.north, self.up)
 
     @property
     def axes(self) -> Array:
-        """Unit vectors east, north and up as rows (3, 3)."""
+        """Unit vectors to the east, north and up, as rows (3, 3)."""
         return np.array([self.east, self.north, self.up])
 
     def direction(self, view: str) -> tuple[Array, Array]:
-        """Return the direction to the viewer and the one up on the screen: unit vectors (3,), (3,)."""
+        """Return two unit vectors (3,) of a standard view: towards the viewer, and up on the screen."""
         up, north, east = self.up, self.north, self.east
         corner = 0.55 * east - 0.75 * north + 0.6 * up
         return {
@@ -87,7 +87,7 @@ class SceneCamera:
 
     @classmethod
     def looking(cls, back: ArrayLike, up: ArrayLike, focal: ArrayLike, distance: float) -> SceneCamera:
-        """Make a camera in the direction `back` from `focal`, with `up` upwards on the screen."""
+        """Make a camera `distance` mm from `focal` in the direction `back`, with `up` upwards on the screen."""
         return cls(np.asarray(focal, dtype=np.float64), _axes(back, up), float(distance))
 
     @property
@@ -98,11 +98,11 @@ class SceneCamera:
 
     @property
     def half_height(self) -> float:
-        """Half height of the picture at the focal point, in mm."""
+        """Half the height in mm that the picture covers at the focal point."""
         return float(self.distance * np.tan(self.view_angle / 2))
 
     def pixels_per_mm(self, size: tuple[int, int]) -> float:
-        """Compute the scale at the focal point in a picture of `size` (width, height)."""
+        """Compute how many pixels a mm at the focal point has in a picture of `size` (width, height) px."""
         return float(size[1] / 2 / self.half_height)
 
     def project(self, points: ArrayLike, size: tuple[int, int]) -> tuple[Array, Array]:
@@ -127,7 +127,7 @@ class SceneCamera:
         return local[:2].T, depth
 
     def orbited(self, dx: float, dy: float, up: ArrayLike) -> SceneCamera:
-        """Turn by a drag of (dx, dy) px: about `up`, and about the screen's horizontal up to the poles."""
+        """Return the camera turned by a drag of (dx, dy) px about `up` and the screen's horizontal."""
         pole = np.asarray(up, dtype=np.float64)
         axes = self.axes @ _rotation(pole, -np.radians(DEGREES_PER_PIXEL) * dx).T
         tilt = np.radians(DEGREES_PER_PIXEL) * dy
@@ -138,22 +138,22 @@ class SceneCamera:
         return replace(self, axes=_axes(axes[2], axes[1]))
 
     def turned(self, before: Orientation, after: Orientation) -> SceneCamera:
-        """Turn about the focal point, so that the view in the second orientation equals that in the first."""
+        """Return the camera turned so that it sees the orientation `after` as it saw `before`."""
         return replace(self, axes=self.axes @ before.axes.T @ after.axes)
 
     def panned(self, dx: float, dy: float, size: tuple[int, int]) -> SceneCamera:
-        """Move so that the scene follows a drag of (dx, dy) pixels."""
+        """Return the camera moved so that the scene follows a drag of (dx, dy) px."""
         scale = self.pixels_per_mm(size)
         return replace(self, focal=self.focal - (self.axes[0] * dx - self.axes[1] * dy) / scale)
 
     def zoomed(self, factor: float, at: tuple[float, float], size: tuple[int, int]) -> SceneCamera:
-        """Move nearer by `factor`; the point under the screen point `at` at the focal depth stays there."""
+        """Return the camera moved nearer by `factor`, with the place at the screen point `at` staying there."""
         dx, dy = at[0] - size[0] / 2, at[1] - size[1] / 2
         nearer = replace(self, distance=self.distance / factor)
         return nearer.panned(dx * (1 - factor), dy * (1 - factor), size)
 
     def fitted(self, points: Array, size: tuple[int, int], margin: tuple[int, int] = (0, 0)) -> SceneCamera:
-        """Move so that `points` (N, 3) fill the picture, seen from the same direction.
+        """Return the camera moved, in the same direction, so that `points` (N, 3) in mm fill the picture.
 
         `margin` are pixels to leave free at the right and at the lower edge, besides BORDER_PX on every side.
         """
@@ -173,7 +173,7 @@ class SceneCamera:
         return moved.panned(-margin[0] / 2, -margin[1] / 2, size)
 
     def depth_range(self, corners: Array) -> tuple[float, float]:
-        """Compute nearest and farthest depth in mm to draw, so that `corners` (N, 3) are in between."""
+        """Compute the nearest and the farthest depth in mm to draw, around the points `corners` (N, 3)."""
         depth = self.distance - (corners - self.focal) @ self.axes[2]
         room = max(0.02 * float(depth.max() - depth.min()), 0.01 * self.distance)  # marks are drawn a little nearer
         near, far = float(depth.min()) - room, float(depth.max()) + room
@@ -200,7 +200,7 @@ def _rotation(axis: Array, angle: float) -> Array:
 
 
 def from_origin(points: Array, size: tuple[int, int], pyramid: Array | None) -> SceneCamera:
-    """Make the view of the measuring camera: from the origin along +z, with −y up.
+    """Make the camera that sees `points` as the measuring camera does: from the origin along +z, with −y up.
 
     `pyramid` (5, 3) are its centre and the corners of its picture, which is then shown whole; without it `points`
     (N, 3) are.

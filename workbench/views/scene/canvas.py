@@ -57,28 +57,28 @@ class Canvas(QWidget):
 
     @property
     def logical_size(self) -> tuple[int, int]:
-        """Width and height in logical pixels."""
+        """Width and height of the canvas in logical pixels."""
         return max(self.width(), 2), max(self.height(), 2)
 
     @property
     def device_size(self) -> tuple[int, int]:
-        """Width and height in device pixels."""
+        """Width and height of the canvas in device pixels."""
         width, height = self.logical_size
         ratio = self.devicePixelRatioF()
         return round(width * ratio), round(height * ratio)
 
     def show_picture(self, pixels: NDArray[np.uint8]) -> None:
-        """Show a picture of the scene, (h, w, 3)."""
+        """Show a picture (h, w, 3) of the scene."""
         self._picture = as_image(pixels)
         self.update()
 
     def show_message(self, message: str | None) -> None:
-        """Show a sentence on an empty ground instead of the scene; None shows the scene."""
+        """Show a sentence in place of the scene; None shows the scene."""
         self._message = message
         self.update()
 
     def set_tool(self, tool: Navigate) -> None:
-        """Set the tool of the mouse."""
+        """Set the tool that gets mouse and keys, and paints over the scene."""
         self.tool = tool
         self.setCursor(tool.cursor)
         self.update()
@@ -144,13 +144,13 @@ class Canvas(QWidget):
 
 
 def as_image(pixels: NDArray[np.uint8]) -> QImage:
-    """Convert (h, w, 3) to an image."""
+    """Convert pixels (h, w, 3), uint8, to a QImage."""
     height, width = pixels.shape[:2]
     return QImage(np.ascontiguousarray(pixels).data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
 
 def as_lines(opacity: NDArray[np.uint8]) -> QImage:
-    """Make an image of dark lines of this opacity (h, w), transparent elsewhere."""
+    """Make an image with dark lines of the given opacity (h, w), uint8, and transparent elsewhere."""
     height, width = opacity.shape
     dark = np.zeros((height, width, 4), dtype=np.uint8)
     dark[:, :, 3] = opacity
@@ -158,7 +158,7 @@ def as_lines(opacity: NDArray[np.uint8]) -> QImage:
 
 
 def as_pixels(image: QImage) -> NDArray[np.uint8]:
-    """Copy an image to (h, w, 3)."""
+    """Convert a QImage to pixels (h, w, 3), uint8."""
     rgb = image.convertToFormat(QImage.Format.Format_RGB888)
     rows = np.frombuffer(rgb.constBits(), dtype=np.uint8)[: rgb.bytesPerLine() * rgb.height()]
     return rows.reshape(rgb.height(), rgb.bytesPerLine())[:, : 3 * rgb.width()].reshape(rgb.height(), -1, 3).copy()

@@ -20,7 +20,7 @@ BATCH = 250_000
 
 
 def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float]) -> int | None:
-    """Find the point of `points` (N, 3) that a click at `at` selects: the nearest on the screen, unless hidden.
+    """Find the index of the point (N, 3) seen nearest to the click `at` in px and not hidden by others; else None.
 
     None when there is none within reach.
     """
@@ -44,7 +44,7 @@ def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at:
 
 
 def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], outline: Outline) -> NDArray[np.bool_]:
-    """Mask (N,) of the `points` (N, 3) that are seen inside an outline. Points behind the viewer are not."""
+    """Compute flags (N,) of the points (N, 3) that are seen inside an outline drawn on the screen."""
     inside = np.zeros(len(points), dtype=bool)
     for start in range(0, len(points), BATCH):
         screen, depth = camera.project(points[start : start + BATCH], size)
@@ -66,7 +66,7 @@ class Outline:
         cv2.polylines(self._mask, [line], isClosed=True, color=2, thickness=4, shift=4)
 
     def contains(self, spots: Array) -> NDArray[np.bool_]:
-        """Mask (N,) of the screen coordinates (N, 2) inside the outline."""
+        """Compute flags (N,) of the screen places (N, 2) that lie inside the outline."""
         low, high = self._corners.min(axis=0), self._corners.max(axis=0)
         with np.errstate(invalid="ignore"):
             near = np.flatnonzero((spots >= low).all(axis=1) & (spots <= high).all(axis=1))

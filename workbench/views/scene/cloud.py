@@ -53,32 +53,32 @@ class SceneCloud:
 
     @property
     def points(self) -> Array:
-        """Points (N, 3) as given, in mm."""
+        """Points (N, 3) of the cloud in mm, as given."""
         return self._points[: self.given]
 
     @property
     def drawable(self) -> bool:
-        """Whether there is a point with finite coordinates."""
+        """Whether any point of the cloud has finite coordinates."""
         return bool(np.isfinite(self.corners).all())
 
     @property
     def chunks(self) -> int:
-        """Number of chunks."""
+        """Number of chunks that the cloud is divided into for drawing."""
         return self._dealt + -(-(self.given - self._first) // CHUNK)
 
     def rows(self, chunk: int) -> slice:
-        """Return the slice of the given points in a chunk."""
+        """Return the slice of `points` that chunk number `chunk` holds."""
         if chunk < self._dealt:
             return slice(chunk, self._first, self._dealt)
         start = self._first + (chunk - self._dealt) * CHUNK
         return slice(start, min(start + CHUNK, self.given))
 
     def size(self, chunk: int) -> int:
-        """Return the number of points in a chunk; only the last chunk changes, when points are added."""
+        """Return how many points chunk number `chunk` has."""
         return len(range(*self.rows(chunk).indices(self.given)))
 
     def chunk(self, number: int) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32] | None]:
-        """Return points (n, 3) in mm, colours and normals (n, 3) of a chunk, without points that are not finite."""
+        """Return the finite points (n, 3) in mm of a chunk, their colours (n, 3), and their normals (n, 3) or None."""
         rows = self.rows(number)
         points = self._points[rows].astype(np.float32)
         if self._values is not None:
@@ -92,17 +92,17 @@ class SceneCloud:
         return points[finite], colours[finite], None if normals is None else normals[finite]
 
     def spread(self, chunks: int) -> list[int]:
-        """Choose so many chunks, evenly over all."""
+        """Choose the numbers of `chunks` chunks, evenly over the whole cloud."""
         if chunks >= self.chunks:
             return list(range(self.chunks))
         return sorted({int(k) for k in np.linspace(0, self.chunks - 1, max(chunks, 1))})
 
     def sample(self, at_most: int = 20_000) -> Array:
-        """Return a fair sample (n, 3) of the points, the newest among them."""
+        """Return an even sample (n, 3) of the points in mm, at most `at_most` of them, the newest included."""
         return self.points[:: -max(1, -(-self.given // at_most))]
 
     def add(self, points: ArrayLike, values: ArrayLike | None) -> None:
-        """Append points; those that are not finite are given a number but never drawn.
+        """Append points (M, 3) in mm with their values (M,); points that are not finite are never drawn.
 
         Raises
         ------
@@ -155,7 +155,7 @@ def _towards_camera(normals: NDArray[np.float32], points: NDArray[np.float32]) -
 
 
 def as_points(points: ArrayLike, what: str = "points") -> Array:
-    """Convert points to (N, 3) float64.
+    """Convert points to an array (N, 3) of float64; ValueError, naming `what`, for any other shape.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def as_points(points: ArrayLike, what: str = "points") -> Array:
 
 
 def finite_rows(points: NDArray[np.floating]) -> NDArray[np.bool_]:
-    """Mask (N,) of the points (N, 3) with three finite coordinates."""
+    """Compute flags (N,) of the points (N, 3) with three finite coordinates."""
     return np.asarray(np.isfinite(points).all(axis=1))
 
 

@@ -52,11 +52,11 @@ class Colouring:
 
     @property
     def title(self) -> str:
-        """Name and unit, as shown over the bar."""
+        """Name and unit of the values, as shown above the colour bar."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def limited(self, values: Array) -> Colouring:
-        """Set the limits: 1 % and 99 % of `values` if none were given."""
+        """Return the colouring with limits; if none were given, the 1 % and 99 % quantiles of `values`."""
         finite = values[np.isfinite(values)]
         if not len(finite):
             return replace(self, limits=self.limits or (0.0, 1.0), clipped=(False, False))
@@ -74,7 +74,7 @@ class Colouring:
         return replace(self, limits=(low, high), clipped=clipped)
 
     def of(self, values: Array) -> NDArray[np.uint8]:
-        """Map values (N,) to colours (N, 3); needs limits."""
+        """Map values (N,) to colours (N, 3), uint8; the colouring must have limits."""
         assert self.limits is not None
         low, high = self.limits
         with np.errstate(invalid="ignore"):
@@ -85,7 +85,7 @@ class Colouring:
         return colours
 
     def plain(self, indices: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """Return colours (N, 3) of the points of these numbers, which have no values; new points are grey."""
+        """Return the colours (N, 3) of the points numbered `indices`, for a colouring without values."""
         if self.colours is None:
             return np.tile(np.array(self.plain_colour, dtype=np.uint8), (len(indices), 1))
         colours = np.full((len(indices), 3), UNKNOWN, dtype=np.uint8)
@@ -96,7 +96,7 @@ class Colouring:
 
 @cache
 def table(colour_map: ColourMap) -> NDArray[np.uint8]:
-    """Return the map as 256 colours (256, 3)."""
+    """Return a colour map as a table of 256 colours (256, 3), uint8."""
     if colour_map == "classes":
         middle = len(DEVIATIONS) // 2
         steps = np.array([to_rgba(one)[:3] for one in (*DEVIATIONS[: middle + 1], *DEVIATIONS[middle:])])
@@ -111,7 +111,7 @@ def table(colour_map: ColourMap) -> NDArray[np.uint8]:
 
 
 def as_colours(colours: ArrayLike, count: int) -> NDArray[np.uint8]:
-    """Convert colours to one a point, (N, 3) uint8; also from numbers up to 1.
+    """Convert colours to one for each of `count` points, (N, 3) uint8; numbers from 0 to 1 are allowed.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def as_colours(colours: ArrayLike, count: int) -> NDArray[np.uint8]:
 
 
 def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]]:
-    """Choose round numbers from `low` to `high`, and their texts, with as many decimals as needed.
+    """Choose at most `at_most` round numbers from `low` to `high`, and write them with equal decimals.
 
     They are two at least, even if that is more than `at_most`: one alone tells no scale.
     """
@@ -142,6 +142,6 @@ def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]
 
 
 def nice_step(at_least: float) -> float:
-    """Round up to 1, 2, 5 times a power of ten."""
+    """Round up to 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(at_least))
     return float(power * next(m for m in (1, 2, 5, 10) if m * power >= at_least * (1 - 1e-9)))

@@ -108,14 +108,14 @@ class SurfaceMesh:
     serial: int = field(default_factory=count().__next__)
 
     def colours(self, vertices: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """Return the colours (n, 3) of some vertices."""
+        """Return the colours (n, 3), uint8, of the vertices with these numbers."""
         if self.values is not None:
             return self.colouring.of(self.values[vertices])
         return self.colouring.plain(vertices)
 
     @cached_property
     def corners(self) -> Array:
-        """Opposite corners (2, 3) of the box round it."""
+        """Two opposite corners (2, 3) in mm of the box around the mesh."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
 
@@ -127,7 +127,7 @@ class HiddenSide:
     towards: Array
 
     def hides(self, points: Array) -> NDArray[np.bool_]:
-        """Mask (N,) of the points (N, 3) that are hidden."""
+        """Compute flags (N,) of the points (N, 3) in mm that lie in the hidden half space."""
         return np.asarray((points - self.place) @ self.towards > 0)
 
 
@@ -148,33 +148,33 @@ class Scene:
 
     @property
     def visible_cloud(self) -> SceneCloud | None:
-        """Cloud, if it is shown and has points."""
+        """Cloud of the scene; None if it is hidden or has no points."""
         return self.cloud if self.cloud is not None and self.cloud_shown and self.cloud.drawable else None
 
     @property
     def visible_mesh(self) -> SurfaceMesh | None:
-        """Mesh, if it is shown."""
+        """Mesh of the scene; None if it is hidden or there is none."""
         return self.mesh if self.mesh_shown else None
 
     @property
     def colouring(self) -> Colouring | None:
-        """Colouring of the bar: the cloud's, else the mesh's; None without values."""
+        """Colouring that the colour bar shows, the cloud's or else the mesh's; None without values."""
         for coloured in (self.visible_cloud, self.visible_mesh):
             if coloured is not None and coloured.colouring.name and coloured.colouring.limits is not None:
                 return coloured.colouring
         return None
 
     def put(self, name: str, item: Item) -> None:
-        """Show an item instead of one of the same kind and name."""
+        """Add an item called `name`, in place of an item of the same kind and name."""
         self.items[type(item), name] = item
 
     def remove(self, name: str, kind: type | None = None) -> None:
-        """Remove the items of a name, of one kind or of all."""
+        """Remove the items called `name`, only those of class `kind` if given."""
         for key in [key for key in self.items if key[1] == name and kind in (None, key[0])]:
             del self.items[key]
 
     def clear(self) -> None:
-        """Remove everything; later content is shown."""
+        """Remove everything from the scene, and show cloud and mesh again when there are new ones."""
         self.cloud = self.mesh = None
         self.cloud_shown = self.mesh_shown = True
         self.items = {}
@@ -183,21 +183,21 @@ class Scene:
 
     @property
     def empty(self) -> bool:
-        """Whether there is nothing to see."""
+        """Whether the scene has nothing to show."""
         return self.visible_cloud is None and self.visible_mesh is None and not self.items
 
     @property
     def has_edges(self) -> bool:
-        """Whether there are lines or a mesh, whose edges are smoothed."""
+        """Whether the scene has lines or a mesh, whose edges have to be smoothed."""
         return self.visible_mesh is not None or any(isinstance(item, Lines) for item in self.items.values())
 
     @property
     def is_mesh_alone(self) -> bool:
-        """Whether a mesh is shown without points over it: its silhouettes and creases are drawn."""
+        """Whether a mesh is shown and no cloud over it, so that its silhouettes and creases are drawn."""
         return self.visible_mesh is not None and self.visible_cloud is None
 
     def to_fit(self) -> Array:
-        """Return the points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
+        """Return the points (N, 3) in mm that a fitted view has to show: cloud, mesh and marks, or else everything."""
         parts = []
         if self.visible_cloud is not None:
             parts.append(self.visible_cloud.sample())
@@ -212,7 +212,7 @@ class Scene:
         return points[finite_rows(points)]
 
     def box(self) -> Array:
-        """Return the eight corners (8, 3) of a box round everything; (0, 3) when there is nothing."""
+        """Return the corners (8, 3) in mm of a box around everything in the scene; (0, 3) if it is empty."""
         ends = [cloud.corners for cloud in [self.visible_cloud] if cloud is not None]
         ends += [mesh.corners for mesh in [self.visible_mesh] if mesh is not None]
         ends += [points for item in self.items.values() for points in _points(item) if len(points)]
@@ -238,7 +238,7 @@ def _points(item: Item) -> Iterator[Array]:
 
 
 def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> SurfaceMesh:
-    """Make a mesh with checked arrays and known limits; vertices that are not finite lose their triangles.
+    """Make a mesh of checked arrays and known limits; triangles with a vertex that is not finite are dropped.
 
     Raises
     ------
@@ -262,7 +262,7 @@ def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, c
 
 
 def each(colours: Sequence[Rgb], count: int) -> tuple[Rgb, ...]:
-    """Repeat one colour for all, or check that there is one each."""
+    """Return `count` colours: one colour repeated, or the given ones if there are as many; else ValueError."""
     if len(colours) == 1:
         return (colours[0],) * count
     if len(colours) != count:

@@ -80,7 +80,7 @@ class Drawing(QObject):
             app.aboutToQuit.connect(self.finish)
 
     def moved(self) -> None:
-        """Draw very soon: the camera moved, or the theme changed."""
+        """Request a drawing very soon, as the camera moved or the theme changed."""
         self.complete = False
         self._passes = []
         self._canvas.edges = None
@@ -91,7 +91,7 @@ class Drawing(QObject):
         self._soon.start()
 
     def changed(self) -> None:
-        """Draw soon: the scene changed."""
+        """Request a drawing soon, as the content of the scene changed."""
         self.complete = False
         cost = sum(size(self._scene, part) for part in all_parts(self._scene))
         if self._passes:
@@ -102,19 +102,19 @@ class Drawing(QObject):
             self.moved()
 
     def grown(self) -> None:
-        """Draw the new points some time soon: the cloud grew."""
+        """Request a drawing of new points when there is time, as the cloud grew."""
         self.complete = False
         if not self._growth.isActive():
             self._growth.start()
 
     def stop(self) -> None:
-        """Stop drawing, until something moves or changes."""
+        """Stop drawing until the camera moves or the scene changes."""
         for timer in (self._soon, self._still, self._next, self._growth):
             timer.stop()
         self._passes, self._again = [], False
 
     def finish(self) -> None:
-        """Release everything; nothing is left running."""
+        """End all drawing and release its resources."""
         self.stop()
         self.complete = False
         self._doubt.stop()
@@ -123,7 +123,7 @@ class Drawing(QObject):
             self._surface, self.kind = None, "none"
 
     def whole_picture(self) -> NDArray[np.uint8] | None:
-        """Draw everything at once, however long it takes: (h, w, 3) in device px; None without 3D."""
+        """Draw the whole scene at once and return its picture (h, w, 3) in device pixels; None without 3D."""
         renderer = self._ready_renderer() if self._canvas.isVisible() else None
         if renderer is not None:
             self.stop()

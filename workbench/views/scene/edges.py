@@ -39,7 +39,7 @@ class Depths:
 
 
 def edge_opacity(depths: Depths, camera: SceneCamera, lines_px: int = 0) -> NDArray[np.uint8]:
-    """Compute the opacity (h, w) of the lines to be drawn over the picture.
+    """Compute the opacity (h, w), uint8, of silhouettes and creases to be drawn over the picture.
 
     Parameters
     ----------

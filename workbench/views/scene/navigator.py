@@ -55,17 +55,17 @@ class Navigator(QObject):
 
     @property
     def is_turned_by_hand(self) -> bool:
-        """Whether the user chose the view: it is not the first view of a scene."""
+        """Whether the user has chosen the view, which then is not fitted automatically."""
         first, _ = self.orientation.direction("iso")
         return self._touched or self._name != "iso" or not np.allclose(self.camera.axes[2], first)
 
     @property
     def is_put_back(self) -> bool:
-        """Whether the user chose a view and went back to the first view of a scene."""
+        """Whether the user has chosen a view and then returned to the first one."""
         return self._ever_turned and not self.is_turned_by_hand
 
     def view(self, name: str) -> None:
-        """Look from a standard direction and fit."""
+        """Look at the scene from the standard direction called `name`, and fit it."""
         self._name, self._touched = name, False
         self._ever_turned = self._ever_turned or name != "iso"
         points = self._scene.to_fit()
@@ -83,7 +83,7 @@ class Navigator(QObject):
             self.fit()
 
     def fit(self) -> None:
-        """Show everything from the same direction."""
+        """Move the camera, in its present direction, so that the whole scene is seen."""
         self._touched = False
         points = self._scene.to_fit()
         self._extent = _extent(points)
@@ -91,7 +91,7 @@ class Navigator(QObject):
         self.moved.emit()
 
     def follow(self, *, afresh: bool = False) -> bool:
-        """Fit a scene that is new or has grown, unless the view was turned by hand. Whether the camera moved."""
+        """Fit a scene that is new or has grown, unless the user chose the view; return whether the camera moved."""
         box = self._scene.box()
         before, self._box = self._box, box
         if not afresh and self._extent > 0 and (self._touched or np.array_equal(box, before)):
@@ -113,17 +113,17 @@ class Navigator(QObject):
         return bool(((screen < 0) | (screen > np.array(self._size()))).any(axis=1).mean() > OUTSIDE)
 
     def resized(self) -> None:
-        """Fit again to another size, unless the view was turned by hand."""
+        """Fit the scene to the view's new size, unless the user chose the view."""
         if not self._touched and self._extent > 0:
             self._fit_or_view()
 
     def forget(self) -> None:
-        """Reset: the scene is empty, and the next one is fitted, seen from a corner."""
+        """Reset the camera, as the scene is empty; the next scene is seen from a corner."""
         self._extent, self._touched, self._name, self.pyramid = 0.0, False, "iso", None
         self._ever_turned = False
 
     def set_frame(self, frame: ViewFrame) -> None:
-        """Set up and north by a frame; a standard view is taken again, one turned by hand turns with them."""
+        """Set which directions are up and north by a view frame, and turn the view with them."""
         before, self.orientation = self.orientation, Orientation.of(frame)
         if self._touched:
             self._move(self.camera.turned(before, self.orientation))
@@ -131,27 +131,27 @@ class Navigator(QObject):
             self.view(self._name)
 
     def set_parallel(self, parallel: bool) -> None:
-        """Set parallel projection or perspective."""
+        """Set parallel projection, or, with False, perspective."""
         self.camera = replace(self.camera, parallel=parallel)
         self.moved.emit()
 
     def orbit(self, dx: float, dy: float) -> None:
-        """Turn by a drag in pixels."""
+        """Turn the view by a drag of (dx, dy) pixels."""
         self._move(self.camera.orbited(dx, dy, self.orientation.up))
 
     def pan(self, dx: float, dy: float) -> None:
-        """Move by a drag in pixels."""
+        """Move the view by a drag of (dx, dy) pixels."""
         self._move(self.camera.panned(dx, dy, self._size()))
 
     def zoom(self, factor: float, at: QPointF | None) -> None:
-        """Move nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by `factor`, towards the screen point `at`, or, for None, the middle."""
         width, height = self._size()
         place = (at.x(), at.y()) if at is not None else (width / 2, height / 2)
         factor = float(np.clip(factor, self.camera.distance / FARTHEST, self.camera.distance / CLOSEST))
         self._move(self.camera.zoomed(factor, place, (width, height)))
 
     def centre_on(self, point: Array) -> None:
-        """Bring a point (3,) to the middle; the view turns about it from now on."""
+        """Move the view so that `point` (3,) in mm is in the middle, about which it then turns."""
         self._move(replace(self.camera, focal=np.asarray(point, dtype=np.float64)))
 
     def _fit_or_view(self, room: float = 1.0) -> None:

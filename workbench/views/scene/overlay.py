@@ -59,18 +59,18 @@ class OverlayColours:
 
     @classmethod
     def of(cls, palette: QPalette) -> OverlayColours:
-        """Make the colours from a widget's palette."""
+        """Make the overlay's colours from the palette of a widget."""
         role = QPalette.ColorRole
         return cls(palette.color(role.Window), palette.color(role.WindowText), palette.color(role.Highlight))
 
     @property
     def dark(self) -> bool:
-        """Whether the background is dark."""
+        """Whether the background of the view is dark."""
         return self.ground.lightness() < 128
 
     @property
     def plate(self) -> QColor:
-        """Colour behind texts that are on the scene."""
+        """Colour of the plates behind texts over the scene."""
         plate = QColor(self.ground)
         plate.setAlpha(205)
         return plate
@@ -86,7 +86,7 @@ def paint_overlay(
     axes: ViewFrame | None,
     grid_mm: float,
 ) -> None:
-    """Paint labels, callouts, colour bar, axes and scale over the scene, but nothing of a tool.
+    """Paint labels, callouts, colour bar, axes and scale over the scene.
 
     `axes` is the frame whose axes are shown, if they are.
     """
@@ -105,7 +105,7 @@ def paint_overlay(
 
 
 def bar_width(colouring: Colouring | None, font: QFont) -> int:
-    """Compute the width in px that the colour bar takes at the right."""
+    """Compute the width in px of the colour bar at the right; 0 without one."""
     if colouring is None:
         return 0
     metrics = QFontMetricsF(small_font(font))
@@ -115,14 +115,14 @@ def bar_width(colouring: Colouring | None, font: QFont) -> int:
 
 
 def corner_rects(size: tuple[int, int]) -> list[QRectF]:
-    """Return the rectangles of the axes and the scale at the lower left."""
+    """Return the rectangles at the lower left that the axes and the scale take."""
     return [QRectF(0, size[1] - MARGIN - 72, MARGIN + 70, MARGIN + 72), QRectF(84, size[1] - 44, 110, 44)]
 
 
 def text_plate(
     painter: QPainter, at: QPointF, text: str, colours: OverlayColours, colour: QColor | None = None
 ) -> QRectF:
-    """Paint a text on a plate, its middle at `at`, and return the plate's rectangle."""
+    """Paint a text on a plate whose middle is `at`, and return the plate's rectangle."""
     plate = _plate(painter, at, text)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(colours.plate)
@@ -142,7 +142,7 @@ def _plate(painter: QPainter, at: QPointF, text: str) -> QRectF:
 
 
 def paint_hint(painter: QPainter, text: str, room: float, colours: OverlayColours) -> None:
-    """Paint what the present tool does, below the name of the frame, in the middle of the room beside the bar."""
+    """Paint what the tool does as text at the top of the view, within `room` px of width."""
     painter.setFont(small_font(painter.font()))
     flags = int(Qt.AlignmentFlag.AlignHCenter) | int(Qt.TextFlag.TextWordWrap)
     box = painter.boundingRect(QRectF(MARGIN, HINT_TOP, room - 2 * MARGIN, 1000), flags, text)
@@ -154,7 +154,7 @@ def paint_hint(painter: QPainter, text: str, room: float, colours: OverlayColour
 
 
 def small_font(font: QFont) -> QFont:
-    """Make the font of texts over the scene."""
+    """Make the font for texts over the scene."""
     small = QFont(font)
     small.setPixelSize(12)
     return small
@@ -224,7 +224,7 @@ def _paint_triad(
 
 
 def axis_colour(number: int, colours: OverlayColours, *, away: bool) -> QColor:
-    """Return the colour of an axis that points away from the viewer, or towards; opaque, as line and name overlap."""
+    """Return the colour of axis 0, 1 or 2; `away`: the axis points away from the viewer."""
     _, on_light, on_dark = AXES[number]
     part = AWAY if away else 1.0
     under_it = colours.ground
@@ -315,7 +315,7 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], c
 
 
 def paint_outline(painter: QPainter, corners: Sequence[QPointF], colours: OverlayColours, *, closed: bool) -> None:
-    """Paint the region that is being drawn."""
+    """Paint the outline of the region that is being drawn; `closed`: with its last side."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     inside = QColor(colours.accent)
     inside.setAlpha(45)
@@ -330,7 +330,7 @@ def paint_outline(painter: QPainter, corners: Sequence[QPointF], colours: Overla
 
 
 def paint_handle(painter: QPainter, at: QPointF, along: QPointF, colours: OverlayColours) -> None:
-    """Paint a ring that can be dragged, with strokes to both sides along the unit vector `along`."""
+    """Paint a ring that can be dragged, with strokes along the unit vector `along`."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setBrush(colours.plate)
     for pen in (QPen(colours.ground, 6), QPen(colours.accent, 2.4)):
@@ -341,7 +341,7 @@ def paint_handle(painter: QPainter, at: QPointF, along: QPointF, colours: Overla
 
 
 def paint_marker(painter: QPainter, at: QPointF, text: str, colours: OverlayColours) -> None:
-    """Paint a ring round a chosen point, with its coordinates."""
+    """Paint a ring around a chosen point, with its coordinates as text."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for pen in (QPen(colours.ground, 6), QPen(colours.text, 2.4)):
@@ -363,6 +363,6 @@ def paint_sentence(painter: QPainter, area: QRectF, text: str, colours: OverlayC
 
 
 def place_text(point: Array) -> str:
-    """Write the coordinates of a point."""
+    """Write the coordinates of a point (3,) in mm as text."""
     x, y, z = (number(c, ".3f") for c in point)
     return f"{x}   {y}   {z} mm"

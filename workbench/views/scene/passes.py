@@ -59,14 +59,14 @@ Made = Callable[[Part], bool]
 
 
 def all_parts(scene: Scene) -> list[Part]:
-    """List all parts, the mesh before the cloud."""
+    """List all parts of the scene that are drawn one by one, the mesh's before the cloud's."""
     cloud, mesh = scene.visible_cloud, scene.visible_mesh
     parts = [Part("mesh", k) for k in range(-(-len(mesh.triangles) // TRIANGLES))] if mesh is not None else []
     return parts + [Part("cloud", k) for k in range(cloud.chunks if cloud is not None else 0)]
 
 
 def size(scene: Scene, part: Part) -> int:
-    """Count the points or triangles of a part, which are its cost."""
+    """Count the points or triangles of a part of the scene, which is the cost of drawing it."""
     if part.kind == "cloud":
         assert scene.cloud is not None
         return scene.cloud.size(part.number)
@@ -75,7 +75,7 @@ def size(scene: Scene, part: Part) -> int:
 
 
 def version(scene: Scene, part: Part) -> Version | None:
-    """Return the version of a part as it is in the scene now; None when it is gone."""
+    """Return the version of a part of the scene, which changes with its content; None if the part is gone."""
     if part.kind == "cloud":
         cloud = scene.visible_cloud
         return Version(cloud.serial, cloud.size(part.number)) if cloud and part.number < cloud.chunks else None
@@ -84,7 +84,7 @@ def version(scene: Scene, part: Part) -> Version | None:
 
 
 def quick_pass(scene: Scene, allowance: float, made: Made) -> Pass:
-    """Make one pass of about `allowance` points and triangles that represents the whole scene while it moves."""
+    """Choose parts with about `allowance` points and triangles that represent the whole scene in motion."""
     parts: list[Part] = []
     left = allowance
     if (mesh := scene.visible_mesh) is not None:
@@ -100,7 +100,7 @@ def quick_pass(scene: Scene, allowance: float, made: Made) -> Pass:
 
 
 def whole_passes(scene: Scene, allowance: float, made: Made) -> list[Pass]:
-    """Divide everything into passes of about `allowance` points and triangles each, at least one."""
+    """Divide all parts of the scene into passes of about `allowance` points and triangles each."""
     batches: list[list[Part]] = [[]]  # the lines are drawn with the first, alone if there is no mesh
     edges = scene.has_edges
     cost = fresh = 0
@@ -136,7 +136,7 @@ class Gathered:
 
 
 def gather(scene: Scene, part: Part) -> Gathered:
-    """Gather the arrays of a part."""
+    """Collect the arrays of one part of the scene: points, colours, normals and triangles."""
     if part.kind == "cloud":
         assert scene.cloud is not None
         return Gathered(*scene.cloud.chunk(part.number))

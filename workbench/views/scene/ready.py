@@ -71,11 +71,11 @@ class Readiness(QObject):
 
     @property
     def kind(self) -> Kind | None:
-        """Kind of drawing here, its libraries imported; None while that is not known."""
+        """How this computer draws in 3D: in an OpenGL window, as pictures, or not at all; None while not known."""
         return "none" if os.environ.get(VARIABLE) == "none" else self._kind
 
     def opengl_in_windows(self) -> bool:
-        """Whether Qt gives its windows OpenGL good enough for VTK; tried once."""
+        """Whether Qt's windows have an OpenGL that is good enough for VTK; tried once."""
         if os.environ.get(VARIABLE):
             return False
         if self._opengl is None:
@@ -83,7 +83,7 @@ class Readiness(QObject):
         return self._opengl
 
     def find_out(self) -> None:
-        """Start to find out, unless that is done or under way."""
+        """Find out in the background how this computer can draw in 3D, unless that is known or under way."""
         if self.kind is not None or self._trial is not None or self._thread is not None:
             return
         if self.opengl_in_windows():
@@ -101,14 +101,14 @@ class Readiness(QObject):
         trial.start(program, arguments)
 
     def give_up(self, kind: Kind) -> None:
-        """Fall back, as this kind of drawing fails: from an OpenGL window to pictures, from pictures to nothing."""
+        """Replace a way of drawing that fails by the next one: OpenGL window, pictures, nothing."""
         self._opengl = False
         self._kind = None if kind == "embedded" else "none"
         self.find_out()
         self.known.emit()
 
     def stop(self) -> None:
-        """Stop waiting for a trial or an import that is under way: the program ends."""
+        """Stop finding out how to draw in 3D, as the program ends."""
         self._stoppable.stopped = True
         if self._trial is not None:
             self._trial.blockSignals(True)
@@ -183,7 +183,7 @@ class _StoppableImport(MetaPathFinder):
 
 
 def reserve_opengl(view: QWidget) -> None:
-    """Give a window an OpenGL widget early: one made anew for it while it is seen would flicker."""
+    """Give a window an OpenGL widget before it is shown, as adding one later would make it flicker."""
     if readiness().opengl_in_windows():
         from PySide6.QtOpenGLWidgets import QOpenGLWidget
 
@@ -214,7 +214,7 @@ _readiness: list[Readiness] = []
 
 
 def readiness() -> Readiness:
-    """Return the program's knowledge about drawing in 3D. GUI thread only."""
+    """Return the program's one `Readiness`, what is known of drawing in 3D; in the GUI thread only."""
     if not _readiness:
         app = QCoreApplication.instance()
         made = Readiness(app)

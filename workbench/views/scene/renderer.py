@@ -73,15 +73,15 @@ class Renderer:
         """Whether a graphics card draws, which has time for ambient occlusion; None before it was found out."""
 
     def set_background(self, colour: Rgb) -> None:
-        """Set the colour behind the scene."""
+        """Set the colour of the background behind the scene."""
         self._renderer.SetBackground(*(c / 255 for c in colour))
 
     def is_made(self, scene: Scene, part: Part) -> bool:
-        """Whether a part can be drawn at once, without being gathered first."""
+        """Whether a part of the scene is ready to be drawn, its arrays having been collected."""
         return part in self._parts and self._parts[part][0] == version(scene, part)
 
     def draw(self, scene: Scene, camera: SceneCamera, what: Pass, size: tuple[int, int], ratio: float) -> None:
-        """Draw a pass and wait for it: `size` in device pixels, of which a logical pixel has `ratio`."""
+        """Draw a pass of the scene and wait for it; `size` is in device pixels, `ratio` of them to a logical pixel."""
         if what.first:
             if not isinstance(self._window, vtkGenericOpenGLRenderWindow):  # a widget's window has the widget's size
                 self._window.SetSize(*size)
@@ -116,7 +116,7 @@ class Renderer:
         self._window.WaitForCompletion()  # or the time of a pass would show up in a later one
 
     def pixels(self) -> NDArray[np.uint8]:
-        """Return the picture drawn last, (h, w, 3)."""
+        """Return the picture (h, w, 3), uint8, that was drawn last."""
         width, height = self._window.GetSize()
         self._window.MakeCurrent()
         data = vtkUnsignedCharArray()
@@ -125,7 +125,7 @@ class Renderer:
         return rows[::-1].copy()
 
     def depths(self) -> Depths:
-        """Return the depth buffer of the present drawing."""
+        """Return the depth buffer of the picture that was drawn last."""
         width, height = self._window.GetSize()
         self._window.MakeCurrent()
         data = vtkFloatArray()
@@ -135,7 +135,7 @@ class Renderer:
         return Depths(rows[::-1].copy(), near, far)
 
     def close(self) -> None:
-        """Release everything while the window still exists."""
+        """Release all of VTK's objects, while the window still exists."""
         self._renderer.RemoveAllViewProps()
         self._items, self._parts = {}, {}
         self._window.RemoveRenderer(self._renderer)
@@ -333,7 +333,7 @@ def _headlight() -> Any:
 
 
 def route_messages() -> None:
-    """Send VTK's messages to Python's logging, not to the console: once, before anything is made."""
+    """Send VTK's messages to Python's logging instead of the console; call it before VTK is used."""
     if _observed:
         return
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)

@@ -17,9 +17,7 @@ PYRAMID: Rgb = (74, 134, 220)
 
 
 def frustum(camera: Camera, depth_mm: float) -> Array:
-    """Compute the camera's centre and the corners of its picture at `depth_mm`: (5, 3) in mm, first pixel first,
-    clockwise.
-    """
+    """Compute the camera's centre and its picture's four corners at `depth_mm`: (5, 3) in mm, clockwise."""
     width, height = camera.image_size
     corners = np.array([[0, 0], [width - 1, 0], [width - 1, height - 1], [0, height - 1]], dtype=np.float64)
     # Without distortion: a pyramid has straight edges, and the corners may lie where the distortion cannot be undone.
@@ -29,7 +27,7 @@ def frustum(camera: Camera, depth_mm: float) -> Array:
 
 
 def plane_patch(plane: LightPlane, camera: Camera, depths_mm: tuple[float, float]) -> Array:
-    """Compute a patch of a light plane between two depths, as long as the picture: corners (4, 3) in mm.
+    """Compute the corners (4, 3) in mm of the part of a light plane that the picture shows between two depths.
 
     At each depth the plane is a straight line. It is cut where it leaves the picture at the ends it runs towards, and
     not where it leaves it sideways, so there always are four corners.
@@ -55,7 +53,7 @@ def plane_patch(plane: LightPlane, camera: Camera, depths_mm: tuple[float, float
 
 
 def target_outline(pose: Pose, points: Array) -> Array:
-    """Compute the rectangle around a target's points (N, 3) at `pose`: (5, 3) in mm, closed."""
+    """Compute the closed rectangle (5, 3) in mm around a target's points (N, 3), placed by `pose`."""
     (left, top), (right, bottom) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
     outline: Array = np.column_stack([corners, np.zeros(5)]) @ pose.rotation.T + pose.translation
@@ -63,7 +61,7 @@ def target_outline(pose: Pose, points: Array) -> Array:
 
 
 def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
-    """Make lines under `points` (N, 3) along east and north, and return their distance in mm.
+    """Make the lines of a grid under `points` (N, 3) in mm, and return their distance in mm as well.
 
     They stand at whole multiples of that distance from the orientation's origin.
     """
@@ -85,7 +83,7 @@ def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
 
 
 def camera_pyramid(corners: Array, name: str) -> tuple[Lines, Labels]:
-    """Make the edges of a pyramid from its centre and four corners (5, 3), and its name at the centre."""
+    """Make the edges of the camera's pyramid from its centre and corners (5, 3), and a label with its name."""
     edges = [np.array([corners[0], corner]) for corner in corners[1:]]
     lines = Lines((*edges, corners[[1, 2, 3, 4, 1]]), (PYRAMID,) * 5, 1.6)
     return lines, Labels(corners[:1], (name,), None)

@@ -45,12 +45,12 @@ class EmbeddedWidget(QtInteractor):
         self._drawn_size = self.size()
 
     def initializeGL(self) -> None:
-        """Set up; the first drawing is done in later rounds of the event loop, as it takes its time."""
+        """Prepare for drawing, which begins in later turns of the event loop (called by Qt)."""
         super().initializeGL()  # type: ignore[no-untyped-call]
         QTimer.singleShot(SOON_MS, self, self._own_a_picture)
 
     def paintGL(self) -> None:
-        """Show the last picture; a new size needs a new one first."""
+        """Show the picture drawn last; after a resize a new one is drawn first (called by Qt)."""
         if not self.started and self._gl is not None:
             self._gl.glClearColor(*(shade / 255 for shade in self.ground), 1.0)
             self._gl.glClear(COLOUR_BUFFER)
@@ -97,21 +97,21 @@ class EmbeddedSurface:
 
     @property
     def ready(self) -> bool:
-        """Whether a pass can be drawn now."""
+        """Whether the OpenGL widget can draw a pass now."""
         return self.widget is not None and self.widget.started
 
     def fit(self, ground: Rgb) -> None:
-        """Take the canvas's place and its background."""
+        """Give the OpenGL widget the canvas's geometry and the background colour `ground`."""
         if self.widget is not None:
             self.widget.ground = ground
             self.widget.setGeometry(self._canvas.geometry())
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """Return None: the widget shows its drawing itself."""
+        """Return None, as the OpenGL widget shows its drawing itself."""
         return None
 
     def close(self) -> None:
-        """Release everything; the surface is not used again."""
+        """Release everything that the OpenGL widget draws with; it is not used again."""
         widget, self.widget = self.widget, None
         if widget is not None and shiboken6.isValid(widget):
             widget.draw = None
@@ -134,14 +134,14 @@ class PictureSurface:
         self.renderer = Renderer(window)
 
     def fit(self, ground: Rgb) -> None:
-        """Do nothing: a picture has the size it is drawn in."""
+        """Do nothing, as each picture has the size it is drawn in."""
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """Return the picture drawn last, (h, w, 3)."""
+        """Return the picture (h, w, 3), uint8, that was drawn last."""
         return self.renderer.pixels()
 
     def close(self) -> None:
-        """Release everything; the surface is not used again."""
+        """Release everything that pictures are drawn with; this object is not used again."""
         plotter, self._plotter = self._plotter, None
         if plotter is not None:
             self.renderer.close()
@@ -149,7 +149,7 @@ class PictureSurface:
 
 
 def works() -> bool:
-    """Whether a small picture off screen is drawn with the given background."""
+    """Whether drawing off screen works: a small picture comes out with the background it was given."""
     from workbench.views.scene.camera import SceneCamera
     from workbench.views.scene.contents import Scene
     from workbench.views.scene.passes import Pass

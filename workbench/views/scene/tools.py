@@ -27,43 +27,43 @@ class ViewControl(Protocol):
     """Actions of a tool on the view."""
 
     def orbit(self, dx: float, dy: float) -> None:
-        """Turn by a drag in pixels."""
+        """Turn the view by a drag of (dx, dy) pixels."""
 
     def pan(self, dx: float, dy: float) -> None:
-        """Move by a drag in pixels."""
+        """Move the view by a drag of (dx, dy) pixels."""
 
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
-        """Move nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by `factor`, towards the screen point `at`, or, for None, the middle."""
 
     def grasp(self, at: QPointF) -> bool:
-        """Hold the handle or callout at a place; True if there is one."""
+        """Hold the handle or callout at the screen point `at`; False if there is none."""
 
     def pull(self, dx: float, dy: float) -> None:
-        """Move the held object, by a drag in pixels."""
+        """Move the handle or callout that is held by a drag of (dx, dy) pixels."""
 
     def drop(self) -> None:
-        """Release the held object."""
+        """Release the handle or callout that is held."""
 
     def point_at(self, at: QPointF) -> None:
-        """Show what is under the mouse, no button down."""
+        """Show by the cursor what is at the screen point `at`, while no button is down."""
 
     def choose(self, at: QPointF) -> None:
-        """Choose the callout at a place, if there is one."""
+        """Choose the callout at the screen point `at`, if there is one."""
 
     def pick(self, at: QPointF) -> None:
-        """Choose the point of the cloud under the cursor."""
+        """Choose the point of the cloud at the screen point `at`."""
 
     def take(self) -> None:
-        """Accept what was chosen last."""
+        """Accept the point or proposal that was chosen last."""
 
     def centre_on(self, at: QPointF) -> None:
-        """Turn about the point under the cursor from now on."""
+        """Turn the view from now on about the point of the cloud at the screen point `at`."""
 
     def choose_region(self, corners: list[QPointF]) -> None:
-        """Choose the points of the cloud inside an outline."""
+        """Choose the points of the cloud that are seen inside a drawn outline."""
 
     def repaint_tool(self) -> None:
-        """Paint the tool again."""
+        """Paint again what the tool draws over the scene."""
 
 
 class Navigate:
@@ -83,13 +83,13 @@ class Navigate:
         self._dragged = self._pulls = False
 
     def press(self, event: QMouseEvent) -> None:
-        """Handle a button that goes down."""
+        """Handle the press of a mouse button."""
         self._last = self._start = event.position()
         self._button, self._dragged = event.button(), False
         self._pulls = event.button() == Qt.MouseButton.LeftButton and self.view.grasp(event.position())
 
     def move(self, event: QMouseEvent) -> None:
-        """Handle a move of the mouse."""
+        """Handle a motion of the mouse: turn or move the view, or drag what is held."""
         at = event.position()
         if self._last is None:
             self.view.point_at(at)
@@ -109,7 +109,7 @@ class Navigate:
             self.view.zoom(1.01 ** -step.y(), self._start)
 
     def release(self, event: QMouseEvent) -> None:
-        """Handle a button that comes up."""
+        """Handle the release of a mouse button."""
         clicked = self._last is not None and not self._dragged and event.button() == Qt.MouseButton.LeftButton
         self._last = None
         if self._pulls and self._dragged:
@@ -118,19 +118,19 @@ class Navigate:
             self.click(event.position())
 
     def click(self, at: QPointF) -> None:
-        """Handle a left click without a drag."""
+        """Handle a left click without a drag: choose the callout there."""
         self.view.choose(at)
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Turn about the point there; a callout goes back to its first place."""
+        """Turn the view about the point under the cursor; a callout there goes back to its first place."""
         self.view.centre_on(event.position())
 
     def wheel(self, event: QWheelEvent) -> None:
-        """Zoom towards the cursor."""
+        """Zoom the view towards the cursor."""
         self.view.zoom(1.0015 ** event.angleDelta().y(), event.position())
 
     def key(self, event: QKeyEvent) -> bool:
-        """Handle a key; True if it was used."""
+        """Handle a key; False if it has no meaning for the tool."""
         if event.key() in ARROWS:
             dx, dy = ARROWS[Qt.Key(event.key())]
             if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
@@ -144,7 +144,7 @@ class Navigate:
         return False
 
     def paint(self, painter: QPainter, colours: OverlayColours) -> None:
-        """Paint the state of the tool."""
+        """Paint over the scene what the tool draws."""
 
 
 class Pick(Navigate):
@@ -166,7 +166,7 @@ class Pick(Navigate):
         return super().key(event)
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Do nothing: two clicks on one point are one choice."""
+        """Do nothing, so that two clicks on a point choose it once."""
 
 
 class Polygon(Navigate):
@@ -265,7 +265,7 @@ class Lasso(Polygon):
             self._finish()
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Do nothing: a lasso is closed by releasing the button."""
+        """Do nothing, as an outline is closed by releasing the button."""
 
     def paint(self, painter: QPainter, colours: OverlayColours) -> None:
         if self._corners:

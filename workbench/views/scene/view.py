@@ -80,7 +80,7 @@ LEAST_PX_PER_MM = 0.02
 
 
 def prepare_3d() -> None:
-    """Find out whether 3D can be drawn and import its libraries, between other events; call it when there is time.
+    """Find out whether 3D can be drawn, and import its libraries, between other events.
 
     Returns at once. Views made earlier or later start as soon as the libraries are there.
     """
@@ -179,7 +179,7 @@ class SceneView(QWidget):
         normals: NDArray[np.float32] | None = None,
         keep_camera: bool = True,
     ) -> None:
-        """Show a cloud instead of the one before.
+        """Show a point cloud (N, 3) in mm, with values, colours or normals, in place of the earlier one.
 
         Parameters
         ----------
@@ -210,7 +210,7 @@ class SceneView(QWidget):
         self._changed(afresh=not keep_camera)
 
     def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:
-        """Add `points` (M, 3) in mm to the cloud, with `values` (M,) if it has values.
+        """Append `points` (M, 3) in mm to the cloud, with `values` (M,) if the cloud has values.
 
         Cheap: only new points are sent to the graphics card, at most ten times a second. `set_cloud` with empty
         arrays before says how the values are called and coloured.
@@ -237,7 +237,7 @@ class SceneView(QWidget):
         colour: ColourLike | None = None,
         keep_camera: bool = True,
     ) -> None:
-        """Show a surface: vertices (V, 3) in mm, triangles (T, 3) of vertex numbers, values (V,) as in `set_cloud`.
+        """Show a mesh: vertices (V, 3) in mm, triangles (T, 3) of vertex indices, and values (V,) if any.
 
         Raises
         ------
@@ -249,7 +249,7 @@ class SceneView(QWidget):
         self._changed(afresh=not keep_camera)
 
     def show_cloud(self, shown: bool) -> None:
-        """Show or hide the cloud."""
+        """Show or hide the point cloud."""
         self._scene.cloud_shown = shown
         self._changed()
 
@@ -259,11 +259,11 @@ class SceneView(QWidget):
         self._changed()
 
     def set_highlight(self, name: str, points: ArrayLike, colour: ColourLike) -> None:
-        """Mark points (N, 3) in one colour, drawn larger than the cloud's."""
+        """Show the marks called `name` at points (N, 3) in mm, larger than the cloud's points."""
         self._put(name, Marks(as_points(points), _rgb(colour), self._drawing.point_size + HIGHLIGHT_WIDER_PX))
 
     def remove_highlight(self, name: str) -> None:
-        """Remove a highlight; none of that name is no error."""
+        """Remove the marks called `name`, if there are any."""
         self._scene.remove(name, Marks)
         self._changed()
 
@@ -274,14 +274,14 @@ class SceneView(QWidget):
         colours: Sequence[ColourLike] | ColourLike,
         opacity: float = 0.25,
     ) -> None:
-        """Show transparent four-cornered patches, each (4, 3) in mm; those that are not finite are left out."""
+        """Show the transparent patches called `name`, corners (4, 3) in mm each; those not finite are left out."""
         patches = [as_points(patch, "corners") for patch in corners]
         shades = each(_rgbs(colours), len(patches))
         kept = [k for k, patch in enumerate(patches) if np.isfinite(patch).all()]
         self._put(name, Patches(tuple(patches[k] for k in kept), tuple(shades[k] for k in kept), opacity))
 
     def set_surface(self, name: str, triangles: ArrayLike, colour: ColourLike, opacity: float = 0.25) -> None:
-        """Show a transparent surface of triangles (T, 3, 3) in mm, over whatever there is."""
+        """Show the transparent surface called `name`, triangles (T, 3, 3) in mm."""
         corners = np.asarray(triangles, dtype=np.float64).reshape(-1, 3, 3)
         patches = np.concatenate([corners, corners[:, 2:]], axis=1)  # the last corner twice
         self._put(name, Patches(tuple(patches), each([_rgb(colour)], len(patches)), opacity))
@@ -289,12 +289,12 @@ class SceneView(QWidget):
     def set_polylines(
         self, name: str, lines: Sequence[ArrayLike], colour: ColourLike | Sequence[ColourLike], width: float = 2.0
     ) -> None:
-        """Show lines, each (N, 3) in mm; one colour for all or one each; `width` in pixels."""
+        """Show the polylines called `name`, each (N, 3) in mm, `width` pixels wide."""
         given = [as_points(line, "lines") for line in lines]
         self._put(name, Lines(tuple(given), each(_rgbs(colour), len(given)), width))
 
     def set_camera_frustum(self, corners: ArrayLike | None) -> None:
-        """Show the camera: (5, 3), its centre and the four corners of its picture; None removes it.
+        """Show the camera as a pyramid (5, 3) in mm, its centre and its picture's corners; None removes it.
 
         See `shapes.frustum`. The view "camera" then shows what the camera sees.
         """
@@ -306,27 +306,27 @@ class SceneView(QWidget):
         self._changed()
 
     def set_labels(self, name: str, labels: Sequence[tuple[ArrayLike, str]], colour: ColourLike | None = None) -> None:
-        """Write texts at places (3,) in mm."""
+        """Show the texts called `name`, each at a place (3,) in mm."""
         places = as_points([np.asarray(place, dtype=np.float64) for place, _ in labels], "places")
         self._put(name, Labels(places, tuple(text for _, text in labels), None if colour is None else _rgb(colour)))
 
     def set_measure(self, name: str, a: ArrayLike, b: ArrayLike, text: str) -> None:
-        """Draw a dimension line from `a` to `b`, both (3,) in mm, with a text, computed by the caller."""
+        """Show the dimension line called `name` from `a` to `b`, (3,) in mm, with a text."""
         ends = as_points([np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)], "ends")
         self._put(name, Measure(ends, text))
 
     def set_handle(self, handle: tuple[ArrayLike, ArrayLike] | None) -> None:
-        """Show a ring at a place (3,) that can be dragged along a unit vector (3,), or none; see `handle_pulled`."""
+        """Show a ring at a place (3,) that can be dragged along a unit vector (3,); None removes it."""
         self._handle = None if handle is None else (np.asarray(handle[0], float), np.asarray(handle[1], float))
         self._canvas.update()
 
     def set_callouts(self, callouts: Sequence[Callout]) -> None:
-        """Show plates of words with lines to their places, instead of those before; see `callout_moved`."""
+        """Show these callouts, text plates with lines to their places, in place of earlier ones."""
         self._scene.callouts = tuple(callouts)
         self._canvas.update()
 
     def visible_callouts(self) -> list[tuple[Callout, QPointF, QRectF]]:
-        """List the visible callouts, each with its place and its plate on the screen, in logical px of the canvas."""
+        """List the callouts that are visible, each with its place and plate in logical pixels of the canvas."""
         callouts, hidden, size = self._scene.callouts, self._scene.hidden, self._canvas.logical_size
         if not callouts:
             return []
@@ -348,7 +348,7 @@ class SceneView(QWidget):
         return [(callouts[k], QPointF(*screen[k]), plate) for k, plate in zip(shown, plates, strict=True)]
 
     def hide_side(self, side: tuple[ArrayLike, ArrayLike] | None) -> None:
-        """Hide what lies beyond a place (3,) in mm, along a unit vector (3,); None: nothing. Lines and planes stay."""
+        """Hide what lies beyond a place (3,) in mm in the direction of a unit vector (3,); None hides nothing."""
         if side is None and self._scene.hidden is None:
             return
         self._scene.hidden = None if side is None else HiddenSide(*(np.asarray(one, float) for one in side))
@@ -361,12 +361,12 @@ class SceneView(QWidget):
         self._canvas.update()
 
     def remove(self, name: str) -> None:
-        """Remove planes, lines, labels, measures or highlights of that name; none is no error."""
+        """Remove all planes, lines, labels, measures and marks called `name`."""
         self._scene.remove(name)
         self._changed()
 
     def clear(self, message: str = "") -> None:
-        """Remove everything; a message is shown in the empty view."""
+        """Remove everything from the view, and show a message in it."""
         self.stop_drawing()
         self._marked = None
         self._scene.clear()
@@ -377,19 +377,19 @@ class SceneView(QWidget):
     # ---- from where it is seen
 
     def view(self, name: ViewName) -> None:
-        """Look from a standard direction and fit."""
+        """Look at the scene from the standard direction called `name`, and fit it."""
         self._navigator.view(name)
 
     def fit(self) -> None:
-        """Show everything from the same direction."""
+        """Move the camera, in its present direction, so that the whole scene is seen."""
         self._navigator.fit()
 
     def set_parallel(self, parallel: bool) -> None:
-        """Set parallel projection, in which lengths can be compared, or perspective."""
+        """Set parallel projection, in which lengths can be compared, or, with False, perspective."""
         self._buttons.parallel.setChecked(parallel)
 
     def set_frame(self, frame: ViewFrame) -> None:
-        """Show the scene in a frame, which standard views, turning, axes, grid and coordinates follow.
+        """Set the frame that standard views, turning, axes, grid and coordinates refer to.
 
         In the camera's own, up is towards the camera and north is up in the camera's picture. What is given to the view
         and what it tells stays in the camera's frame.
@@ -401,41 +401,41 @@ class SceneView(QWidget):
 
     @property
     def frame(self) -> ViewFrame:
-        """Frame in which the scene is shown."""
+        """Frame that standard views, axes, grid and coordinates refer to."""
         return self._frame
 
     def screen_positions(self, points: ArrayLike) -> Array:
-        """Project points (N, 3) to this view: (N, 2) in logical px of its canvas; NaN behind the viewer."""
+        """Project points (N, 3) in mm to the canvas: (N, 2) in logical px; NaN behind the viewer."""
         return self._camera.project(as_points(points), self._canvas.logical_size)[0]
 
     # ---- choosing
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
-        """Add a checkable button to the view's tool bar, whose key works in the view; `symbol` names its icon."""
+        """Add a checkable button with a key and an icon to the view's tool bar, and return its action."""
         return self._buttons.add_tool(text, key, symbol)
 
     def start_picking(self) -> None:
-        """Emit `point_picked` at every click on the cloud, and `taken` at Enter, until Esc or `stop_drawing`.
+        """Start picking: a click on the cloud emits `point_picked`, Enter emits `taken`, Esc ends it.
 
         Dragging still turns the view.
         """
         self._start(Pick(self))
 
     def set_hint(self, hint: str) -> None:
-        """Show what the present tool does over the view, instead of its own words; one line or two."""
+        """Show over the view what the tool does, in place of the tool's own words; one line or two."""
         self._canvas.tool.hint = hint
         self._canvas.update()
 
     def start_polygon(self) -> None:
-        """Start to click the corners of a region; a double click or Enter closes it, Esc cancels."""
+        """Start drawing a region by clicks at its corners; a double click or Enter closes it, Esc cancels."""
         self._start(Polygon(self))
 
     def start_lasso(self) -> None:
-        """Start to draw round a region with the button held down; Esc cancels."""
+        """Start drawing a region by one stroke round it, the button held down; Esc cancels."""
         self._start(Lasso(self))
 
     def stop_drawing(self) -> None:
-        """End picking or drawing without a result."""
+        """End picking, or drawing without a region."""
         if type(self._canvas.tool) is not Navigate:
             self._canvas.set_tool(Navigate(self))
             self._marked = None
@@ -444,7 +444,7 @@ class SceneView(QWidget):
     # ---- pictures
 
     def picture(self) -> NDArray[np.uint8]:
-        """Return the whole view, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
+        """Wait until everything is drawn, and return the view with its labels and colour bar: (h, w, 3), uint8."""
         pixels = self._drawing.whole_picture()
         if pixels is None:  # nothing to see, or no 3D here
             image = QImage(*self._canvas.device_size, QImage.Format.Format_RGB32)
@@ -461,7 +461,7 @@ class SceneView(QWidget):
         return as_pixels(image)
 
     def seen_from(self) -> SeenFrom | None:
-        """Return the view that the user chose; None as long as it is the first one."""
+        """Return the view that the user has chosen; None if it is still the first one."""
         if self._scene.empty or not self._navigator.is_turned_by_hand:
             return None
         camera, (width, height), hidden = self._camera, self._canvas.logical_size, self._scene.hidden
@@ -469,18 +469,18 @@ class SceneView(QWidget):
         return SeenFrom(camera.axes, camera.focal, camera.half_height, width / height, beyond)
 
     def is_put_back(self) -> bool:
-        """Whether the user chose a view of what is shown, and went back to the first one."""
+        """Whether the user has chosen a view and then returned to the first one."""
         return not self._scene.empty and self._navigator.is_put_back
 
     def save_picture(self, path: Path) -> None:
-        """Write the picture as PNG; InputError if the file cannot be written."""
+        """Write a picture of the view to a PNG file; InputError if the file cannot be written."""
         buffer = QBuffer()
         buffer.open(QIODevice.OpenModeFlag.WriteOnly)
         as_image(self.picture()).save(buffer, "PNG")  # type: ignore[call-overload]
         atomic.write_bytes(path, bytes(buffer.data().data()))
 
     def state(self) -> DrawingState:
-        """Return the state of drawing."""
+        """Return how far the scene is drawn, for messages and tests."""
         drawing, cloud = self._drawing, self._scene.cloud
         return DrawingState(
             kind=drawing.kind,
@@ -493,25 +493,25 @@ class SceneView(QWidget):
     # ---- what tools do (`ViewControl`)
 
     def orbit(self, dx: float, dy: float) -> None:
-        """Turn by a drag in pixels."""
+        """Turn the view by a drag of (dx, dy) pixels."""
         self._navigator.orbit(dx, dy)
 
     def pan(self, dx: float, dy: float) -> None:
-        """Move by a drag in pixels."""
+        """Move the view by a drag of (dx, dy) pixels."""
         self._navigator.pan(dx, dy)
 
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
-        """Move nearer by a factor, towards a point of the screen or its middle."""
+        """Move nearer by `factor`, towards the screen point `at`, or, for None, the middle."""
         self._navigator.zoom(factor, at)
 
     def grasp(self, at: QPointF) -> bool:
-        """Hold the handle or the callout under the cursor; True if there is one."""
+        """Hold the handle or callout at the screen point `at`; False if there is none."""
         callout = None if self._handle_under(at) else self._callout_under(at)
         self._held = "" if callout is None else callout.name
         return callout is not None or self._handle_under(at)
 
     def pull(self, dx: float, dy: float) -> None:
-        """Move the held callout, or emit how far along its direction the handle goes to follow the mouse."""
+        """Move the held callout by a drag of (dx, dy) pixels; of a handle, emit how far it is pulled in mm."""
         if self._held:
             self._pull_callout(dx, dy)
         elif self._handle is not None:
@@ -521,25 +521,25 @@ class SceneView(QWidget):
                 self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
 
     def drop(self) -> None:
-        """Release the held object, and emit where a callout is now."""
+        """Release the handle or callout that is held, and emit where a callout is now."""
         for one in self._scene.callouts:
             if self._held and one.name == self._held:
                 self.callout_moved.emit(one.name, one.moved)
         self._held = ""
 
     def point_at(self, at: QPointF) -> None:
-        """Show by the cursor what can be dragged."""
+        """Show by the cursor whether what is at the screen point `at` can be dragged."""
         held = self._handle_under(at) or self._callout_under(at) is not None
         self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if held else self._canvas.tool.cursor)
 
     def choose(self, at: QPointF) -> None:
-        """Emit that the callout under the cursor was clicked."""
+        """Emit that the callout at the screen point `at` was clicked, if there is one."""
         callout = self._callout_under(at)
         if callout is not None:
             self.callout_chosen.emit(callout.name)
 
     def pick(self, at: QPointF) -> None:
-        """Choose and mark the point of the cloud under the cursor."""
+        """Choose the point of the cloud at the screen point `at`, mark it and emit it."""
         number, points = self._under(at), self._points_seen()
         if number is not None:
             self._marked = points[number].copy()
@@ -547,13 +547,13 @@ class SceneView(QWidget):
             self.point_picked.emit(number, self._marked)
 
     def take(self) -> None:
-        """Emit that Enter was pressed; the mark of the last point is removed."""
+        """Emit that Enter was pressed, and remove the mark of the point picked last."""
         self._marked = None
         self._canvas.update()
         self.taken.emit()
 
     def centre_on(self, at: QPointF) -> None:
-        """Turn about the point under the cursor from now on; a callout there goes back to its first place."""
+        """Turn the view from now on about the point at the screen point `at`; a callout there is put back."""
         callout = self._callout_under(at)
         if callout is not None:
             self._move_callout(callout.name, None)
@@ -564,11 +564,11 @@ class SceneView(QWidget):
             self._navigator.centre_on(self._points_seen()[number])
 
     def look_at(self, point: Array) -> None:
-        """Bring a point (3,) to the middle; the view turns about it from now on."""
+        """Move the view so that `point` (3,) in mm is in the middle, about which it then turns."""
         self._navigator.centre_on(point)
 
     def choose_region(self, corners: list[QPointF]) -> None:
-        """Choose the points of the cloud inside an outline."""
+        """Emit which points of the cloud are seen inside a drawn outline."""
         inside = np.zeros(self._scene.cloud.given if self._scene.cloud is not None else 0, dtype=bool)
         points = self._points_seen()
         if len(points):
@@ -578,7 +578,7 @@ class SceneView(QWidget):
         self.region_selected.emit(inside)
 
     def repaint_tool(self) -> None:
-        """Paint the tool again."""
+        """Paint again what the tool draws over the scene."""
         self._canvas.update()
 
     # ---- Qt
