@@ -28,7 +28,7 @@ Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 
 def read_picture(path: str | Path, channel: Channel | None = None) -> Picture:
-    """Read a picture file as grey levels.
+    """Read a picture file as grey levels (height, width) in uint8 or uint16; `channel` picks one of a colour picture.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Bench:
         return self._run(self.measuring, receiver, job, *args, label=label, **more)
 
     def run_quick(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
-        """Run a short `job(*args)` in a process of its own, so that it need not wait; a notice shows an error."""
+        """Run a short `job(*args)` in its own process, where long jobs do not delay it; a notice shows an error."""
         return self._run(self.quick, receiver, job, *args, label=label, **more)
 
     def _run(

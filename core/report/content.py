@@ -398,7 +398,7 @@ class ReportContent:
 
     @property
     def shown_at(self) -> tuple[tuple[Characteristic, NDArray[np.int64]], ...]:
-        """Worst characteristic of each feature with its points' indices, for callouts: MOST_CALLOUTS, worst first.
+        """Worst characteristic of each feature with its points' indices; at most MOST_CALLOUTS, worst first.
 
         The gauge's thickness is shown on its upper face.
         """

@@ -54,7 +54,7 @@ class Words:
         return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
 
     def general(self, value: float) -> str:
-        """Format a number with no more digits than it has; with a power of ten if very small or large."""
+        """Format a number to at most six significant digits, with a power of ten if very small or large."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
 

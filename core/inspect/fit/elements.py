@@ -49,7 +49,7 @@ class Element:
 
     @classmethod
     def of_plane(cls, fit: SurfaceFit[ParallelPlanes], kind: Literal["plane", "point"] = "plane") -> Element:
-        """Make the element of a fitted plane face, or of the point in the middle of its points."""
+        """Make the element, place and direction with derivatives, of a fitted plane face or the point in its middle."""
         levels = fit.shape
         gradient = levels.normal_gradient
         along = np.zeros_like(gradient)
@@ -58,14 +58,14 @@ class Element:
 
     @classmethod
     def of_sphere(cls, fit: SurfaceFit[Sphere]) -> Element:
-        """Make the element of a fitted sphere: its centre as a point."""
+        """Make the element, place with derivatives, of a fitted sphere: its centre as a point."""
         gradient = np.hstack([np.eye(3), np.zeros((3, 1))])
         away = fit.shape.centre / np.linalg.norm(fit.shape.centre)
         return cls("point", fit.shape.centre, -away, gradient, np.zeros((3, 4)), fit.effects)
 
     @classmethod
     def of_cylinder(cls, fit: SurfaceFit[Cylinder]) -> Element:
-        """Make the element of a fitted cylinder: its axis."""
+        """Make the element, place and direction with derivatives, of a fitted cylinder: its axis."""
         tube = fit.shape
         return cls("axis", tube.centre, tube.direction, tube.centre_gradient, tube.direction_gradient, fit.effects)
 

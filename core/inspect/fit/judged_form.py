@@ -201,7 +201,7 @@ class Stretches:
 
     @classmethod
     def of(cls, cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Stretches:
-        """Average the residuals `left` of all points of a cloud over stretches of stripes; outliers count less."""
+        """Average the residuals `left` of all points of a cloud over pieces of stripes; outliers count less."""
         expected = cloud.sigma * np.maximum(
             np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING
         )

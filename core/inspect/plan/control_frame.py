@@ -59,7 +59,7 @@ def datum_letters(plan: InspectionPlan) -> dict[str, str]:
 
 
 def control_frames(plan: InspectionPlan) -> Mapping[str, ControlFrame]:
-    """Make the feature control frame (ISO 1101) of each toleranced form or lie, by the characteristic's name."""
+    """Make the feature control frame (ISO 1101) of each toleranced form, orientation or location, by its name."""
     letters, frames = datum_letters(plan), dict[str, ControlFrame]()
     for spec in plan.features:
         for name, result in results_of(spec).items():

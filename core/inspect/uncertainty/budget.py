@@ -77,7 +77,7 @@ def budget(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Contribution, ...]:
-    """Compute the uncertainty budget of a quantity q with the derivatives `gains` (J,) by the misfits of stretches.
+    """Compute the uncertainty budget of a quantity q with derivatives `gains` (J,) by the residuals of J stripe pieces.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def effects(
     form_mm: float = 0.0,
     calibrations: Sequence[Source] = (),
 ) -> tuple[Effect, ...]:
-    """Compute the effect of each cause of error on p quantities with derivatives `gains` (p, J) by J misfits."""
+    """Compute the effect of each cause of error on p quantities with derivatives `gains` (p, J) by J stripe pieces."""
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []

@@ -64,12 +64,12 @@ class Sources:
 
     @property
     def explained(self) -> Array:
-        """Effects (J, K′) on the stretches of the common errors that a fit may estimate from the points."""
+        """Effects (J, K′), on J pieces of stripes, of the common errors that a fit may estimate from the points."""
         return np.asarray(self.common[:, ~self.unexplained])
 
     @property
     def measured(self) -> Array:
-        """Effects (J, K″) on the stretches of the common errors that a fit may estimate and whose size was measured."""
+        """Effects (J, K″), on J pieces of stripes, of common errors of measured size that a fit may estimate."""
         return np.asarray(self.common[:, ~(self.unexplained | self.assumed)])
 
     @classmethod
@@ -82,7 +82,7 @@ class Sources:
         patch: NDArray[np.int64],
         errors: PointErrors,
     ) -> Sources:
-        """Divide a cloud's points into stretches of stripes, and compute how each cause of error acts on each stretch.
+        """Divide a cloud's points into pieces of stripes, and compute how each cause of error acts on each piece.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class Sources:
         )
 
     def effects(self, others: Array) -> Array:
-        """Stack the effects A (J, n) on the stretches: `others` (J, q), the fan's speckle, and the sweeps."""
+        """Stack the effects A (J, n) on J pieces of stripes: `others` (J, q), the fan's speckle, and the sweeps."""
         return np.hstack([others, self.speckle, self.sweeps])
 
     def information(self, others: Array, weight: Array) -> Array:
@@ -162,7 +162,7 @@ class Sources:
         return of_swept + fan_rows.T @ fan_rows
 
     def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
-        """Compute the information matrix (n, n) of the sweeps' stretches, and rows R of the fan, which add Rᵀ R.
+        """Compute the information matrix (n, n) of the sweeps' stripes, and rows R of the fan's, which add Rᵀ R.
 
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
@@ -175,7 +175,7 @@ class Sources:
         return of_swept, rows
 
     def mean(self, values: Array) -> Array:
-        """Compute the weighted mean (J,) or (J, …) over each stretch of the points' `values` (N,) or (N, …)."""
+        """Compute the weighted mean (J,) or (J, …) over each of J pieces of stripes of `values` (N,) or (N, …)."""
         columns = values.reshape(len(values), -1)
         means = np.column_stack([np.bincount(self.stretch, self.share * column) for column in columns.T])
         return np.asarray(means.reshape(len(self.own), *values.shape[1:]))

@@ -196,7 +196,7 @@ class PointErrors:
         return place
 
     def stretches(self, cloud: Cloud, part: NDArray[np.int64], place: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Assign each point (N,) to a stretch of a stripe, numbered from 0; each stretch lies on one face `part`.
+        """Assign each point (N,) to a piece of a stripe, numbered from 0; each piece lies on one face `part`.
 
         Those of the fan are the cells of `speckle` where `place` (N,), as of `places`, knows the point.
         """

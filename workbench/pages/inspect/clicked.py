@@ -129,7 +129,7 @@ class InspectClicked(QObject):
         return shown + "\n" + self._what_enter_does() + " " + tr("Click elsewhere for another, Esc drops it.")
 
     def follow(self) -> None:
-        """Propose for the feature that is now chosen, or keep to the same one under its new name."""
+        """Propose faces for the feature that is chosen now, or keep to the feature before under its new name."""
         features = self._features
         if not self.mode or features.chosen == self._chosen:
             return

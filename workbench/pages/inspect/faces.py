@@ -81,7 +81,7 @@ class InspectFaces(QObject):
         return self.spec.upper_polygon_px is not None
 
     def region(self, face: str) -> Array | None:
-        """Return the polygon (n, 2) in px that the face "upper" or "lower" is measured in; None: it is found."""
+        """Return the polygon (n, 2) in px that the face "upper" or "lower" is measured in; None: automatic."""
         drawn: Array | None = getattr(self.spec, f"{face}_polygon_px")
         return self._regions.get(face, drawn)
 

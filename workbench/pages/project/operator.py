@@ -114,7 +114,7 @@ class OperatorMode(QObject):
 
     @property
     def facts(self) -> OperatorFacts:
-        """What stage and buttons of the operator mode are derived from, as it is now."""
+        """Present state of the project from which stage and buttons of the operator mode are derived."""
         model, report = self._model, self._model.states["report"].state
         return OperatorFacts(
             pictures=bool(model.project.sources.scan),

@@ -31,7 +31,7 @@ class StateChoice:
 
 
 def choose_access(parent: QWidget, folder: Path) -> Access | None:
-    """Ask how to open a project that is open elsewhere; None if the user cancels. Does not ask if it is not."""
+    """Ask how to open a project if it is open elsewhere, else return ALONE; None if the user cancels."""
     holder = lock_owner(folder)
     if holder is None:
         return Access.ALONE

@@ -90,7 +90,7 @@ class RepeatStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the study of the repeats."""
+        """Notes on what limits the study of repeats: its doubts, and repeats outside the limits of the run chart."""
         said = notes_of(self.doubts)
         if self.run is not None and self.run.outside:
             names = [self.labels[place] for place in self.run.outside]

@@ -155,7 +155,7 @@ class SeriesStudy:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the study of the series."""
+        """Notes on what limits the study of a series, in its control charts and in its capability."""
         return (*self._of_charts(), *self._of_capability())
 
     def label_of(self, point: int) -> str:

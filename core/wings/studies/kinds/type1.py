@@ -127,7 +127,7 @@ class Type1Study:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """Notes on the type-1 study."""
+        """Notes on what limits the type-1 study: doubts, too few repeats, a bias, or no scatter; () for none."""
         said = [*notes_of(doubts_of_study(self.doubted))]
         if self.n < FEW_MEASUREMENTS:
             said.append(note_of("study.few_repeats", n=self.n, least=FEW_MEASUREMENTS))
