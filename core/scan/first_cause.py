@@ -11,8 +11,8 @@ that is another one again counts once (`core.image.repeated`), light that change
 crossing either, it makes sections wider, and σ with them; where widths are compared it is part of their model
 (`core.scan.footprint`). Faces that lie askew are compared with their other form (`core.inspect.fit.judged_form`).
 
-A measured cause that explains most of what is too large is said before all others. The others come in the order of
-`Suspect`: each is a fact that leaves a result unsure, whatever else there is, and no other explains most.
+Measured causes are said first, what explains more before what explains less. The others come in the order of
+`Suspect`: each is a fact that leaves a result unsure, whatever else there is.
 """
 
 from __future__ import annotations
@@ -27,8 +27,6 @@ from core.messages import Message
 
 BY_CHANCE = 0.01
 """A cause is named where chance alone would explain as much with a smaller probability, over all that were tried."""
-MOST = 0.5
-"""Share of what is too large from which on a cause is said before all that explain less, or have no share."""
 
 
 class Suspect(StrEnum):
@@ -98,7 +96,7 @@ class Reason:
 
 
 def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[Reason, ...]:
-    """Sort reasons why a scan failed: those whose causes explain much of its misfit first, the others as in `Suspect`.
+    """Sort the reasons by how much of the excess misfit of the scan their causes explain, then in the order of Suspect.
 
     Examples
     --------
@@ -106,18 +104,12 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
     >>> [one.suspect.value for one in in_order([few, moved])]
     ['moved', 'few_frames']
     >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.FEW_FRAMES, 0.1)])]
-    ['moved', 'few_frames']
-    >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.FEW_FRAMES, 0.7)])]
     ['few_frames', 'moved']
     """
     shares = {cause.suspect: cause.share or 0.0 for cause in causes}
     rank = list(Suspect).index
 
-    def place(reason: Reason) -> tuple[float, int]:
-        share = shares.get(reason.suspect, 0.0)
-        return -share if share >= MOST else 0.0, rank(reason.suspect)
-
-    return tuple(sorted(reasons, key=place))
+    return tuple(sorted(reasons, key=lambda reason: (-shares.get(reason.suspect, 0.0), rank(reason.suspect))))
 
 
 @contextmanager

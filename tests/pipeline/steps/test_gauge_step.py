@@ -102,6 +102,14 @@ def test_what_moved_is_named_before_lines_that_bend_where_it_explains_most():
     assert "(what is named first explains 80 % of what is too large)" in str(refused)
 
 
+def test_of_two_causes_that_were_compared_the_one_that_explains_more_is_named_though_it_is_not_most():
+    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True))
+    shares = [Cause(Suspect.MOVED, 0.4, 12, 1e-9), Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
+    refused = told_first(scan, no_faces(), bends=bends, causes=shares)
+    assert refused.code == "gauge.moved_and_no_faces"
+    assert "(what is named first explains 40 % of what is too large)" in str(refused)
+
+
 def test_only_the_likeliest_cause_is_told_of_faces_that_are_not_found():
     scan = scan_of(unsure_share=0.8, saturated=53, facts=ScanFacts(moved=True))
     refused = told_first(scan, no_faces())
