@@ -113,18 +113,22 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
 
 
 @contextmanager
-def cause_first(reasons: Callable[[], Iterable[Reason]], causes: Sequence[Cause] = ()) -> Iterator[None]:
-    """Put the likeliest of the `reasons` before the text of an InputError that is raised in this block.
+def cause_first(
+    reasons: Callable[[], Iterable[Reason]], causes: Callable[[], Sequence[Cause]] = tuple
+) -> Iterator[None]:
+    """Put the first of the reasons that holds before the text of a complaint raised in this block.
 
-    `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared. The
-    share of the one that is named is told.
+    `reasons` is called if there is a complaint, and gives those that hold; where any does, `causes` gives those that
+    are compared. The share of the one that is named is told.
     """
     try:
         yield
     except InputError as error:
-        for reason in in_order(reasons(), causes):
+        holding = tuple(reasons())
+        compared = causes() if holding else ()
+        for reason in in_order(holding, compared):
             if reason.of_own or not isinstance(error, OwnCause):
-                what = reason.begun(_with_share(error.what, reason.suspect, causes))
+                what = reason.begun(_with_share(error.what, reason.suspect, compared))
                 raise reason.kind(what, where=error.where, todo=reason.todo) from error
         raise
 

@@ -108,7 +108,7 @@ def reconstruct(
     watched = watch_fan(features, lines, camera, fan)
     _require_rest(features, watched)
     among, unrest = (crossings, line), partial(_unrest, watched, names)
-    shares = causes_of_light(features, watched.movements) if watched.unsteady else ()
+    shares = partial(causes_of_light, features, watched.movements)
     bounces = NO_BOUNCES
     if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
         bounces = find_second_bounces(features.frames, among, camera, fan)

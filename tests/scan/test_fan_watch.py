@@ -133,6 +133,14 @@ def test_what_cannot_be_solved_is_refused_for_what_moved(what, code, monkeypatch
     assert refused.value.code == code
 
 
+def test_shares_of_causes_are_worked_out_for_a_complaint_only(monkeypatch):
+    def ask(*_):
+        raise AssertionError("nobody complains")
+
+    monkeypatch.setattr(reconstruct_module, "causes_of_light", ask)
+    assert measured(lifted_mm=0.4).moved
+
+
 @pytest.mark.accuracy
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_rig_that_warms_too_much_is_refused_for_its_drift_or_told_to_drift(seed):

@@ -70,7 +70,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         regions = _regions(spec)
         why = partial(reasons_of_no_faces, scan, cloud, calibration.fan.bends)
-        with _no_thickness(), cause_first(why, scan.causes), single_face_as_cause(scan, cloud):
+        with _no_thickness(), cause_first(why, lambda: scan.causes), single_face_as_cause(scan, cloud):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),

@@ -42,7 +42,7 @@ def told_first(scan, error, *, bends=None, causes=()):
     """The complaint as the step tells it."""
     with (
         pytest.raises(InputError) as refused,
-        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), bends), causes),
+        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), bends), lambda: causes),
     ):
         raise error
     return refused.value
