@@ -32,9 +32,13 @@ ROWS = (
             "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts on "
             "them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise."),
     Finding("form.askew", Weight.CAUTION, Effect.WIDENS_U,
-            "Between {name:and} there is an angle: it explains {percent:.0f} % of what their points are off parallel "
-            "planes. U contains what that does to the value. Lay the part flat, without chips or burrs under it, and "
-            "scan again; a part that is so gets a feature for the angle."),
+            "Between {name:and} there is an angle of about {deg:.2g}°: it explains {percent:.0f} % of what their "
+            "points are off parallel planes. U contains what that does to the value. Lay the part flat, without chips "
+            "or burrs under it, and scan again; a part that is so gets a feature for the angle."),
+    Finding("form.levels_askew", Weight.CAUTION, Effect.WIDENS_U,
+            "Not parallel to {reference}: {name:and}, by up to about {deg:.2g}°. That explains {percent:.0f} % of what "
+            "the points of all levels are off parallel planes. U contains what that does to the heights. Levels that "
+            "are made so get a feature for the angle."),
     Finding("form.bowed", Weight.CAUTION, Effect.WIDENS_U,
             "The form of {name} is not true: it is bowed, its middle is {mm:.2g} mm {where} its rim. U contains "
             "what that does to the value."),

@@ -138,6 +138,11 @@ class ScanFacts:
     of_the_day: Doubts = ()
 
     @property
+    def displaced(self) -> bool:
+        """Whether light, camera or part are surely or seemingly elsewhere than taken: plane faces may slant by that."""
+        return any((self.moved, self.drifted, self.fan_disagrees, self.rig_changed, self.rig_seems_changed))
+
+    @property
     def doubts(self) -> Doubts:
         """Facts by which no value measured in the scan proves conformity; () where there are none.
 

@@ -232,7 +232,7 @@ def _notes_on_form(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, error
     indices = np.concatenate([pair.upper, pair.lower])
     part = np.repeat([0, 1], [len(pair.upper), len(pair.lower)])
     shape = planes.shape(cloud.points[indices], part)
-    return notes_on_form(cloud, indices, shape, errors, (UPPER_FACE, LOWER_FACE), part)
+    return notes_on_form(cloud, indices, shape, errors, (UPPER_FACE, LOWER_FACE), part, lies=True)
 
 
 def doubted(gauge: GaugeResult, doubts: Doubts) -> GaugeResult:

@@ -9,7 +9,9 @@ What is made good before the sweeps are located leaves no crossing off, so there
 that is another one again counts once (`core.image.repeated`), light that changed with the exposure is taken off
 (`core.scan.features.fan_light`), saturated pixels have no weight. A sheet that meets its surface obliquely displaces no
 crossing either, it makes sections wider, and σ with them; where widths are compared it is part of their model
-(`core.scan.footprint`). Faces that lie askew are compared with their other form (`core.inspect.fit.judged_form`).
+(`core.scan.footprint`). Nor is an angle between faces compared with any cause: it is named where it explains most of
+the faces' form (`core.inspect.fit.judged_form`), unless a fact of the scan says that light, camera or part were
+displaced.
 
 Measured causes are said first, what explains more before what explains less. The others come in the order of
 `Suspect`: each is a fact that leaves a result unsure, whatever else there is.

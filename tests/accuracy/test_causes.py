@@ -118,3 +118,12 @@ def test_an_angle_between_the_faces_is_told_as_that_and_a_part_laid_flat_is_meas
     assert not [note.code for note in flat.notes if note.code.startswith("form.")]
     assert abs(askew.thickness_mm - 50.0) < askew.U_mm and abs(flat.thickness_mm - 50.0) < flat.U_mm
     assert flat.U_mm < 0.7 * askew.U_mm
+
+
+@pytest.mark.accuracy
+def test_faces_that_slant_by_a_fan_that_turned_are_not_said_to_lie_askew(tmp_path):
+    simulate_set(replace(base(0.25), seed=301, turned_urad=8000.0, stated=True), tmp_path / "set")
+    gauge = run(tmp_path / "set", tmp_path / "out").gauge
+    told = [note.code for note in gauge.notes]
+    assert np.degrees(gauge.parallelism) > 0.5
+    assert "inspection.rig_has_changed" in told and "form.askew" not in told

@@ -46,6 +46,7 @@ WIDENED = {
     "part.temperature_assumed": Cause.PART_TEMPERATURE_ASSUMED,
     "form.scatter": Cause.FORM,
     "form.askew": Cause.FORM,
+    "form.levels_askew": Cause.FORM,
     "form.bowed": Cause.FORM,
     "form.uneven": Cause.FORM,
     "form.uneven_along": Cause.FORM,

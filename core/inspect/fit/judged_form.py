@@ -6,7 +6,8 @@ does not do what it should: a face that is bent, a dent, a flank. That is no fau
 *form*; it is told where it stands out of the scatter of the points, so that nobody takes a bent face for a plane.
 
 Faces that were fitted as parallel and are not stand out most of all by a slant against each other. What each of them is
-off beside that is its form.
+off beside that is its form. Light, a camera or a part that was displaced slants faces as well, at each height
+otherwise: where a fact of the scan says so, no angle is named.
 
 Points that the fit has left out as wrong are judged with the rest, as far as a single one can: a dent is full of them.
 
@@ -37,6 +38,7 @@ from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import PATCHES, PointErrors, patches
 from core.messages import Message
 from core.model.arrays import Array
+from core.model.directions import square_to
 from core.model.residuals import Judgement, Residuals, SharedErrors, along_line, judge_with_shared
 from core.model.robust import huber_weights, mad_sd
 from core.scan.surface.cloud import Cloud
@@ -247,6 +249,7 @@ def notes_on_form(
     names: Sequence[Message],
     part: Parts | None = None,
     position: Array | None = None,
+    lies: bool = False,
 ) -> tuple[Message, ...]:
     """Make the notes on the form error of a fitted surface and its direction, at most one for each face.
 
@@ -263,6 +266,8 @@ def notes_on_form(
     position
         (N, 2) in mm along a section, whose stretches the faces are then, and off its plane: a surface that slants or
         curves across the cut's width is no fault.
+    lies
+        Whether the faces are those of a part and of what it lies on; else they are levels, if there are several.
     """
     part = np.zeros(len(indices), dtype=np.int64) if part is None else part
     # Where a face is looked for, farther points are of something else; a region or a section holds them as well.
@@ -284,8 +289,11 @@ def notes_on_form(
         across = [np.where(part[:, None] == k, np.hstack([off, off**2]), 0.0) for k in range(len(names))]
         left = Left(left.misfit, left.outward, np.hstack([left.design, *across]))
     found, patterns = _patterns_on(cloud, left, part, places, errors)
-    askew = _note_on_angle(patterns, names) if position is None and len(names) > 1 else ()
-    if askew:
+    explained = _share_of_slants(patterns) if position is None and len(names) > 1 else 0.0
+    askew: tuple[Message, ...] = ()
+    if explained > _MOST:
+        if not (errors.facts and errors.facts.displaced):
+            askew = (_note_on_angle(left, cloud.points, part, names, explained, lies=lies),)
         found, patterns = _patterns_on(cloud, left.each_slanted(cloud.points, part), part, places, errors)
     if found is None:
         return askew
@@ -295,7 +303,7 @@ def notes_on_form(
         for number, pattern in enumerate(patterns)
         if pattern is not None and np.ptp(pattern.height) >= least
     ]
-    return (*askew, *notes) or of_scatter(found, names)
+    return (*askew, *(notes or of_scatter(found, names)))
 
 
 def _patterns_on(
@@ -309,14 +317,42 @@ def _patterns_on(
     return found, [pattern_on(found, places, one, cloud.select(np.flatnonzero(part == one))) for one in faces]
 
 
-def _note_on_angle(patterns: Sequence[Pattern | None], names: Sequence[Message]) -> tuple[Message, ...]:
-    """A note if faces that were fitted as parallel are off most of all because they are not."""
+def _share_of_slants(patterns: Sequence[Pattern | None]) -> float:
+    """How much of what the patterns of faces that were fitted as parallel are off, in squares, their slants explain."""
     seen = [one for one in patterns if one is not None]
     total = sum(float(one.count @ one.height**2) for one in seen)
-    left = sum(float(one.count @ one.beside_plane() ** 2) for one in seen)
-    if not seen or 1 - left / total <= _MOST:
-        return ()
-    return (note_of("form.askew", name=list(names), percent=100 * (1 - left / total)),)
+    return 1 - sum(float(one.count @ one.beside_plane() ** 2) for one in seen) / total if seen else 0.0
+
+
+def _note_on_angle(
+    left: Left, points: Array, part: Parts, names: Sequence[Message], share: float, *, lies: bool
+) -> Message:
+    """A note that faces fitted as parallel are not, which explains that share of what is `left`.
+
+    Levels are compared with the one to which all points are nearest to parallel. Those are named that rise against it
+    by at least half as much as the one that rises most.
+    """
+    slants, extents, count = [], [], np.bincount(part)
+    for number in range(len(names)):
+        on = part == number
+        flat = points[on] @ square_to(left.outward[0])
+        flat -= flat.mean(axis=0)
+        slants.append(np.linalg.lstsq(flat, left.misfit[on] - left.misfit[on].mean(), rcond=None)[0])
+        extents.append(float(np.linalg.norm(flat, axis=1).max()))
+    between = np.linalg.norm(np.array(slants)[:, None] - np.array(slants), axis=2)
+    if lies:
+        deg = float(np.degrees(np.arctan(between.max())))
+        return note_of("form.askew", name=list(names), deg=deg, percent=100 * share)
+    reference = int(np.argmin(between @ count))
+    rise = between[reference] * extents
+    slanting = np.flatnonzero(rise >= _CARRIED * rise.max())
+    return note_of(
+        "form.levels_askew",
+        reference=names[reference],
+        name=[names[int(number)] for number in slanting],
+        deg=float(np.degrees(np.arctan(between[reference, slanting].max()))),
+        percent=100 * share,
+    )
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:

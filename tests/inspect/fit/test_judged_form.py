@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from core.findings.proof import ScanFacts
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.fit.judged_form import FACE, LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.shapes import ParallelPlanes
@@ -19,6 +20,7 @@ from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import CENTRE, FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
+from tests.scan_facts import KNOWN, NOTHING_WRONG
 
 SEEDS = (0, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in range(1, 10)))
 BLOCK = BlockScan(height=40.0, sweeps=30)
@@ -102,6 +104,7 @@ def test_plane_faces_that_are_not_parallel_are_told_as_that_and_not_as_uneven(de
     result = measure_gauge(lifted(block(seed), askew(deg)), errors=BLOCK_ERRORS)
     (told,) = [note for note in result.notes if note.code.startswith("form.")]
     assert told.code == "form.askew" and told.values["percent"] > 80
+    assert told.values["deg"] == pytest.approx(deg, abs=0.1) and "Lay the part flat" in str(told)
     assert result.parallelism == pytest.approx(np.radians(deg), abs=np.radians(0.1))
 
 
@@ -111,6 +114,51 @@ def test_what_an_angle_leaves_is_told_beside_it(seed: int) -> None:
     first, second = [note for note in result.notes if note.code.startswith("form.")]
     assert first.code == "form.askew"
     assert second.code == "form.bowed" and "the upper face" in str(second)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_points_that_scatter_about_faces_with_an_angle_are_told_beside_it(seed: int) -> None:
+    cloud = lifted(block(seed), askew(1.0))
+    doubted = replace(cloud, sigma=cloud.sigma / 3)
+    result = measure_gauge(doubted, errors=PointErrors(BLOCK.covariance / 9))
+    assert [note.code for note in result.notes if note.code.startswith("form.")] == ["form.askew", "form.scatter"]
+
+
+@pytest.mark.parametrize("fact", ["rig_changed", "rig_seems_changed", "fan_disagrees", "moved", "drifted"])
+def test_no_angle_is_named_where_a_fact_of_the_scan_slants_faces(fact: str) -> None:
+    cloud = lifted(block(0), askew(0.5))
+
+    def told(facts: ScanFacts) -> list[str]:
+        notes = measure_gauge(cloud, errors=replace(BLOCK_ERRORS, facts=facts)).notes
+        return [note.code for note in notes if note.code.startswith("form.")]
+
+    assert told(NOTHING_WRONG) == ["form.askew"]
+    assert told(ScanFacts(**{**KNOWN, fact: True})) == []
+
+
+def levels(seed: int, slanting: tuple[int, ...]) -> Cloud:
+    """The block with one half of its upper face at 25 mm, level 2, and the other at 40 mm, some of them at 1°."""
+    along = (BLOCK.points - TOP_MIDDLE) @ axes()[0]
+    number = np.where(BLOCK.upper, np.where(along < 0, 2, 3), 1)
+    cloud = block(seed)
+    lowered = np.where(number == 2, (TABLE_MM - 25.0) / (TABLE_MM - BLOCK.height), 1.0)
+    cloud = replace(cloud, points=cloud.points * lowered[:, None])
+    return lifted(cloud, np.where(np.isin(number, slanting), np.tan(np.radians(1.0)) * (along % HALF - HALF / 2), 0.0))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(
+    ("slanting", "said"),
+    [((2,), "level 1: level 2,"), ((3,), "level 1: level 3,"), ((2, 3), "level 1: level 2 and level 3,")],
+)
+def test_of_levels_those_are_named_that_are_not_parallel_to_the_others(
+    slanting: tuple[int, ...], said: str, seed: int
+) -> None:
+    """Nobody is told to lay them flat: levels of one part are made so. What sweeps err turns faces of 30 mm by 0.3°."""
+    plan = InspectionPlan(BLOCK_PLAN.features[1:])
+    (angle,) = notes(evaluate(plan, levels(seed, slanting), errors=BLOCK_ERRORS), "step")
+    assert angle.code == "form.levels_askew" and f"Not parallel to {said}" in str(angle)
+    assert angle.values["deg"] == pytest.approx(1.0, abs=0.35) and "flat" not in str(angle)
 
 
 @pytest.mark.parametrize(("depth_mm", "word"), [(0.3, "too low"), (-0.3, "too high")])
