@@ -33,6 +33,7 @@ from core.simulate.scene.objects import gauge_block
 from core.translations import PSEUDO, language, languages
 from tests.wings.studies.grr_tables import AIAG
 from tests.wings.studies.spc_tables import PISTON_RINGS
+from tests.workbench.tabs import tab_titled
 from workbench.app import Application, build_window, speak
 from workbench.bench import Bench, make_bench
 from workbench.language import choose
@@ -187,7 +188,7 @@ def _make_report(app: QApplication, window: MainWindow) -> None:
 def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterator[str]:
     """Name after name of what there is to be seen on the inspect page, each shown before it is named."""
     inspect, page = cast(Any, window.presenters["inspect"]), cast(Any, window.pages["inspect"])
-    studies = page.brought["Studies"].studies
+    studies = tab_titled(page.tabs, "Studies").studies
 
     def shown(tab: Any, feature: str = "") -> None:
         page.tabs.setCurrentWidget(tab)
@@ -204,7 +205,7 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
         ("plot", page.plot, "profile"),
         ("histogram", page.plot, "nominal"),
         ("repeats", page.series, ""),
-        ("no-studies", page.brought["Studies"], ""),
+        ("no-studies", tab_titled(page.tabs, "Studies"), ""),
     ):
         shown(tab, feature)
         if feature:

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication, QLabel, QMenu, QScrollArea, QToolBut
 from core.files.project.data import new_project
 from core.translations import PSEUDO, language
 from tests.workbench.clipped import clipped
+from tests.workbench.tabs import tab_titled
 from workbench.app import build_window
 from workbench.bench import Bench
 from workbench.first_measurement import ORDER
@@ -63,7 +64,7 @@ def fill_inspect_page(window: MainWindow, bench: Bench, qtbot: Any) -> None:
     qtbot.waitUntil(lambda: inspect.scan.view is not None, timeout=60_000)
     inspect.repeats.add()
     page: Any = window.pages["inspect"]
-    if (tab := page.brought.get("Studies")) is not None:
+    if (tab := tab_titled(page.tabs, "Studies")) is not None:
         tab.studies.begin("grr")
         tab.studies.write("part;operator;value\n" + "".join(f"{i % 5};{i // 5 % 2};{i * i % 7}\n" for i in range(20)))
         tab.studies.finish()

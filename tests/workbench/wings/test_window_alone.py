@@ -12,6 +12,7 @@ from pytestqt.qtbot import QtBot
 from core.door import WITHOUT
 from tests.code import ROOT
 from tests.wings.strangers import look_again
+from tests.workbench.tabs import tab_titles
 from workbench.bench import Bench
 from workbench.main_window import MainWindow
 from workbench.wing import WindowWing, opened_by_entries, window_wings
@@ -36,9 +37,11 @@ def test_every_folder_of_a_wing_is_found() -> None:
 
 def test_the_window_opens_without_it(taken_away: WindowWing, window: MainWindow) -> None:
     page: Any = window.pages["inspect"]
-    entries, tabs = {one.name for one in taken_away.entries}, {one.title for one in taken_away.tabs}
-    assert entries or tabs or taken_away.below_repeats
-    assert not entries & window.menus.actions.keys() and not tabs & page.brought.keys()
+    entries = {one.name for one in taken_away.entries}
+    assert entries or taken_away.tabs or taken_away.below_repeats
+    assert not entries & window.menus.actions.keys()
+    assert page.tabs.count() == 4 + sum(len(wing.tabs) for wing in window_wings())
+    assert not {one.title for one in taken_away.tabs} & {*tab_titles(page.tabs)}
     assert len(page.series.parts) == sum(bool(wing.below_repeats) for wing in window_wings())
     assert "many sets" in window.menus.actions and window.bench.notices.all == []
 

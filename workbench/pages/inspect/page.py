@@ -55,10 +55,7 @@ class InspectPage(StepPage):
             (self.plot, tr("Plot"), tr("The profile or the deviations of the chosen feature")),
         ):
             self.tabs.add(tab, title, tip)
-        self.brought: dict[str, Any] = {}
-        """The tabs of the wings, by their titles in English."""
         for one, made in inspect_tabs(presenter.bench, presenter):
-            self.brought[one.title] = made
             self.tabs.add(made, tr(one.title), tr(one.tip))
         self.centre.addWidget(self.tabs, 1)
         self.card = StageCard(

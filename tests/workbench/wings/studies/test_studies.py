@@ -17,6 +17,7 @@ from tests.workbench.cells import place, shown
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.inspect.conftest import measuring, quick, show_page
+from tests.workbench.tabs import tab_titled
 from workbench.language import choose, tr
 from workbench.theme import apply_theme
 from workbench.views import ask
@@ -52,7 +53,7 @@ def studies(tab):
 def tab(presenter, show_page):
     made = show_page(presenter)
     made.tabs.setCurrentIndex(STUDIES)
-    return made.brought["Studies"]
+    return tab_titled(made.tabs, "Studies")
 
 
 def undo(presenter):
@@ -308,7 +309,7 @@ def page_with_study(presenter, show_page, qtbot):
     """A page of a window 1280 pixels wide that shows a gauge R&R study."""
     page = show_page(presenter, 1280 - RAIL, 700)
     page.tabs.setCurrentIndex(STUDIES)
-    studies = page.brought["Studies"].studies
+    studies = tab_titled(page.tabs, "Studies").studies
     studies.begin("grr")
     studies.write("part;operator;value\n" + ROWS)
     studies.finish()
@@ -323,11 +324,13 @@ def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_p
     try:
         apply_theme(qapp, "light")
         page = page_with_study(presenter, show_page, qtbot)
-        table = page.brought["Studies"].table
+        table = tab_titled(page.tabs, "Studies").table
         qtbot.waitUntil(lambda: table.isVisible() and len(table.rows()) == 7)
         assert len(table._model.titles) == 5 and table.table.horizontalScrollBar().maximum() == 0
-        page.brought["Studies"].rows.set_rows([("Entscheidung", "bedingt geeignet, mit Vorbehalt", "", "warn")])
-        value = page.brought["Studies"].rows._labels[0][1]
+        tab_titled(page.tabs, "Studies").rows.set_rows(
+            [("Entscheidung", "bedingt geeignet, mit Vorbehalt", "", "warn")]
+        )
+        value = tab_titled(page.tabs, "Studies").rows._labels[0][1]
         qtbot.waitUntil(lambda: value.width() >= value.sizeHint().width())
         tip = table._model.headerData(3, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
         assert tip == tr("σ over that of the whole scatter")
@@ -343,7 +346,7 @@ def test_the_table_of_a_study_is_cut_for_no_numbers_beside_it_but_for_the_edge_o
     try:
         apply_theme(qapp, "light")
         page = page_with_study(presenter, show_page, qtbot)
-        tab = page.brought["Studies"]
+        tab = tab_titled(page.tabs, "Studies")
         bar, outer = tab.table.table.horizontalScrollBar(), tab.findChild(QScrollArea).horizontalScrollBar()
         qtbot.waitUntil(lambda: tab.table.isVisible() and len(tab.table.rows()) == 7)
         tab.table.set_headers([("a column of some width", "")] * 3)

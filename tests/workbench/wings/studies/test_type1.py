@@ -7,6 +7,7 @@ import pytest
 from core.wings.studies.kinds.type1 import type1_study
 from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.inspect.conftest import measuring, quick, show_page
+from tests.workbench.tabs import tab_titles
 from workbench.pages.inspect.words import repeats_tsv
 from workbench.wings.studies.type1 import no_type1, type1_part
 
@@ -54,5 +55,5 @@ def test_the_repeats_are_studied_beside_their_chart(presenter, show_page, qtbot)
 
 def test_the_tab_of_the_wing_is_the_last_and_its_study_stands_below_the_repeats(presenter, show_page):
     page = show_page(presenter)
-    assert page.tabs.tabText(page.tabs.count() - 1) == "Studies" == next(iter(page.brought))
+    assert tab_titles(page.tabs)[-1] == "Studies"
     assert [type(part.widget).__name__ for part in page.series.parts] == ["Type1Part"]
