@@ -18,8 +18,15 @@ from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, fou
 from core.messages import Message
 
 OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
-OUR_COMMANDS: Mapping[str, str] = {"plan": "rig_planning", "study": "studies"}
+STUDIES = "studies"
+"""Our own wing that reads studies."""
+OUR_COMMANDS: Mapping[str, str] = {"plan": "rig_planning", "study": STUDIES}
 """The commands of our own wings, and which wing each is of: known where the wing's folder is gone, too."""
+
+NO_READER_OF_STUDIES = Message(
+    "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
+)
+"""What is wrong where no wing reads them, as an InputError tells it with `how_to_get`."""
 
 _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
@@ -102,6 +109,11 @@ class Found(Generic[AWing]):
 def wings() -> Found[Wing]:
     """Return all wings, loaded once, with notes on those that cannot be used."""
     return found_wings(Wing, chain(by_folders(OURS, "WING"), by_entry_points(GROUP)))
+
+
+def studies_can_be_read() -> bool:
+    """Whether a wing is there that reads studies."""
+    return any(wing.reads_study for wing in wings())
 
 
 def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:

@@ -14,7 +14,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.findings.table import note_of
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
-from core.pipeline.steps.brought_sections import studies_can_be_read, with_studies
+from core.pipeline.steps.brought_sections import with_studies
 from core.pipeline.steps.report_step import report_content, report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -22,6 +22,7 @@ from core.report.content import AuditMark, RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.template import SECTIONS, ReportTemplate
 from core.second_process import SecondProcess
+from core.wing import studies_can_be_read
 
 
 def make_report(

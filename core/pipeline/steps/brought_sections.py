@@ -14,10 +14,7 @@ from core.messages import Message
 from core.report.content import BroughtSection, ReportContent, ReportedStudy
 from core.report.facts.fact import Fact
 from core.report.wording import Words
-from core.wing import how_to_get, wings
-
-STUDIES = "studies"
-"""Our own wing that reads studies."""
+from core.wing import NO_READER_OF_STUDIES, STUDIES, how_to_get, wings
 
 
 def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
@@ -40,11 +37,6 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
     return replace(content, brought=tuple(sections), notes=(*content.notes, *failed))
 
 
-def studies_can_be_read() -> bool:
-    """Whether a wing is there that reads studies."""
-    return any(wing.reads_study for wing in wings())
-
-
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
     """Add the studies in `paths`, each a study.json or its folder; a note tells where the wing that reads them fails.
 
@@ -57,10 +49,7 @@ def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent
         return content
     reading = next(((wing, origin) for wing, origin in wings().wings if wing.reads_study), None)
     if reading is None:
-        what = Message(
-            "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
-        )
-        raise InputError(what, where=paths[0], todo=how_to_get(STUDIES))
+        raise InputError(NO_READER_OF_STUDIES, where=paths[0], todo=how_to_get(STUDIES))
     wing, origin = reading
     found, failed = list[ReportedStudy](), list[Message]()
     for path in paths:

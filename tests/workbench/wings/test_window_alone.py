@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,11 +12,14 @@ from PySide6.QtWidgets import QMainWindow
 from pytestqt.qtbot import QtBot
 
 from core.door import WITHOUT
+from core.files.project.data import KeptStudy, new_project
+from core.messages import plain
 from tests.code import ROOT
 from tests.wings.strangers import look_again
 from tests.workbench.tabs import tab_titles
 from workbench.bench import Bench
 from workbench.main_window import MainWindow
+from workbench.pages.report.presenter import ReportPresenter
 from workbench.wing import WindowWing, opened_by_entries, window_wings
 
 OURS = tuple(sorted(path.parent.name for path in ROOT.glob("workbench/wings/*/wing.py")))
@@ -44,6 +49,22 @@ def test_the_window_opens_without_it(taken_away: WindowWing, window: MainWindow)
     assert not {one.title for one in taken_away.tabs} & {*tab_titles(page.tabs)}
     assert len(page.series.parts) == sum(bool(wing.below_repeats) for wing in window_wings())
     assert "many sets" in window.menus.actions and window.bench.notices.all == []
+
+
+def test_without_the_wing_of_studies_no_tab_of_it_is_named(
+    monkeypatch: pytest.MonkeyPatch, hand_bench: Bench, tmp_path: Path
+) -> None:
+    kept = KeptStudy("ab", "grr", plain("3 parts"))
+    hand_bench.model.create(tmp_path / "one", replace(new_project("one"), studies=(kept,)))
+    presenter = ReportPresenter(hand_bench)
+    assert presenter.empty_section("studies") == ""
+    monkeypatch.setenv(WITHOUT, "studies")
+    look_again()
+    told = presenter.empty_section("studies")
+    monkeypatch.undo()
+    look_again()
+    why = "Studies are read by the wing studies, which is not there; take it out of TRISECT_WITHOUT_WINGS."
+    assert told == why, "ticked or not"
 
 
 def test_with_it_its_entries_stand_where_it_says(window: MainWindow) -> None:

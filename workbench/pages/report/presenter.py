@@ -6,11 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import finished, up_to_date
 from core.files.project.view_file import read_view
 from core.files.results.export_list import EXPORTS
+from core.messages import capital
 from core.report.template import SECTIONS
+from core.wing import NO_READER_OF_STUDIES, STUDIES, how_to_get, studies_can_be_read
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
 from workbench.pages.presenter import StepPresenter
@@ -62,13 +65,18 @@ class ReportPresenter(StepPresenter):
             if "deviation" in kinds
             else tr("There is no deviation from a nominal surface among the features yet."),
             "repeats": "" if self.project.repeats else tr("No scan has been added to the repeats yet."),
-            "studies": ""
-            if any(study.included for study in self.project.studies)
-            else tr("No study is ticked on the Inspect page, tab Studies."),
+            "studies": self._no_studies(),
             "remarks": "" if self.project.info.notes else tr("There are no notes on the Project page yet."),
             "budget": "" if "gauge" in self.model.results else tr("The thickness has not been measured yet."),
         }
         return nothing.get(name, "")
+
+    def _no_studies(self) -> str:
+        """Why there is no study to print, or "": a tab that is not there is named to nobody."""
+        if not studies_can_be_read():
+            return capital(text_of(InputError(NO_READER_OF_STUDIES, todo=how_to_get(STUDIES))))
+        ticked = any(study.included for study in self.project.studies)
+        return "" if ticked else tr("No study is ticked on the Inspect page, tab Studies.")
 
     def choose_section(self, name: str, shown: bool) -> None:
         """Print a section of the report, or leave it out; undoable."""
