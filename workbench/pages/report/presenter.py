@@ -72,7 +72,7 @@ class ReportPresenter(StepPresenter):
         return nothing.get(name, "")
 
     def _no_studies(self) -> str:
-        """Why there is no study to print, or "": a tab that is not there is named to nobody."""
+        """Give the reason why no study is printed, or ""; no tab of a wing that is not there is named."""
         if not studies_can_be_read():
             return capital(text_of(InputError(NO_READER_OF_STUDIES, todo=how_to_get(STUDIES))))
         ticked = any(study.included for study in self.project.studies)
