@@ -21,10 +21,10 @@ from core.findings.brought import failure, note_on_unusable
 from core.findings.table import unusable_findings
 from core.messages import Message
 from core.report.facts.fact import Fact
-from core.report.wording import Words
+from core.report.wording import ENGLISH
 from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
-from workbench.language import chosen, text_of
+from workbench.language import text_of
 from workbench.notices import Notices
 
 Thing = TypeVar("Thing")
@@ -151,10 +151,10 @@ class PartOfWing:
         return self._tried(self._facts, ())
 
     def _facts(self) -> Sequence[Fact]:
-        facts, words = tuple(self._part.facts()), Words(chosen())
+        facts = tuple(self._part.facts())
         for fact in facts:
-            fact.heading(words)
-            fact.text(words)
+            fact.title(ENGLISH)
+            fact.text(ENGLISH)
         return facts
 
     def _tried(self, call: Callable[[], Thing], otherwise: Thing) -> Thing:

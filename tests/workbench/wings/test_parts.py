@@ -64,6 +64,12 @@ def test_one_that_cannot_be_refreshed_leaves_nothing_stale(page):
     assert told(shown) == [f"{FAILED}OSError: no gauge"]
 
 
+def test_its_facts_are_copied_with_the_repeats(page):
+    shown = page(facts="return (Fact('wear', 0.25, 'mm'),)")
+    shown.series.copy.click()
+    assert QGuiApplication.clipboard().text().endswith("\n\nwear [mm]\t0.250000\n") and told(shown) == []
+
+
 @pytest.mark.parametrize(
     ("facts", "why"),
     [
