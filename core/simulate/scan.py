@@ -54,7 +54,7 @@ class StageEffects:
     transport: Transport = ONE_WAY
 
     def over(self, index: int) -> float:
-        """Compute the share of the scan's frames that is over at frame `index`; 0 for the reference, −1."""
+        """Compute the share of the scan, 0 to 1, that has passed at frame `index`; 0 for the reference, index −1."""
         return (index + 1) / max(self.frames, 1)
 
 

@@ -64,7 +64,7 @@ class Sources:
 
     @property
     def explained(self) -> Array:
-        """Effects (J, K′), on J pieces of stripes, of the common errors that a fit may estimate from the points."""
+        """Columns (J, K′) of the matrix `common`: of the errors that a fit of the points can estimate."""
         return np.asarray(self.common[:, ~self.unexplained])
 
     @property

@@ -60,7 +60,10 @@ class LineErrors:
 
     @classmethod
     def of(cls, crossings: CrossingTable) -> LineErrors:
-        """Take the errors from the table of crossings or, if not known there, as of means over 2 `half_length_px`."""
+        """Make the errors of the lines at crossings from their table.
+
+        Where it states no shares of cells, they are those of a mean over `half_length_px` to each side.
+        """
         ends = (
             _End.known(
                 crossings.a,

@@ -172,7 +172,7 @@ class ScanPresenter(StepPresenter):
 
     @property
     def check_is_due(self) -> bool:
-        """Whether pictures of the interim check should be taken next: none is of today, and no scan is measured.
+        """Whether pictures of the interim check should be taken next: there are none of today, and no scan yet.
 
         Planes that were calibrated a moment ago are as good as a check.
         """

@@ -61,9 +61,9 @@ def target_outline(pose: Pose, points: Array) -> Array:
 
 
 def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
-    """Make the lines of a grid under `points` (N, 3) in mm, and return their distance in mm as well.
+    """Make the lines of a grid under `points` (N, 3) in mm, and return their spacing in mm as well.
 
-    They stand at whole multiples of that distance from the orientation's origin.
+    They stand at whole multiples of that spacing from the orientation's origin.
     """
     axes = orientation.axes
     local = (points - orientation.origin) @ axes.T
