@@ -1,5 +1,6 @@
 """What commands say on standard error off a terminal, `--quiet` and `--verbose`, exit codes, and completion."""
 
+import io
 import json
 import os
 import re
@@ -8,6 +9,7 @@ import sys
 
 import pytest
 
+from core.cli import main
 from core.cli.bar import bar
 from core.cli.options import EPILOG, ExitCode
 from core.files.recording.recording_set import open_set
@@ -124,3 +126,11 @@ def test_a_shell_completes_commands_and_options_without_numba():
 def test_the_script_of_a_shell_is_shown(monkeypatch):
     monkeypatch.setattr("shellingham.detect_shell", lambda: ("bash", "/bin/bash"))  # not the one that runs the tests
     assert "_TRISECT_COMPLETE=complete_bash" in trisect("--show-completion", "bash").out
+
+
+def test_what_the_encoding_of_a_file_lacks_is_replaced(tiny_set, tiny_measured, tmp_path, monkeypatch):
+    out, file = copy_of(tiny_measured, tmp_path / "out"), io.BytesIO()
+    monkeypatch.setattr("sys.stdout", io.TextIOWrapper(file, encoding="ascii"))
+    with pytest.raises(SystemExit) as left:
+        main(["planes", str(tiny_set), "--out", str(out)])
+    assert left.value.code in (None, 0) and b"?" in file.getvalue()

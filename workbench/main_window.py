@@ -380,6 +380,8 @@ class MainWindow(QMainWindow):
         for presenter in self.presenters.values():
             presenter.changed.connect(self._refreshing.soon)
             presenter.go_to.connect(self.go_to)
+        for notice in self.bench.notices.all:  # wings that cannot be used are told while the window is made
+            self._on_notice(notice)
         self.bench.notices.added.connect(self._on_notice)
         self.bench.settings.language_changed.connect(self._on_language)
         lane = self.bench.measuring

@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cache
+from io import TextIOWrapper
 from typing import Annotated, Any
 
 import typer
@@ -68,6 +69,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
     words = list(sys.argv[1:] if arguments is None else arguments)
     language.choose_loudness(talk.Loudness.USUAL)
+    if isinstance(sys.stdout, TextIOWrapper):  # a file in the encoding of Windows has no σ: no reason to fail
+        sys.stdout.reconfigure(errors="replace")
     with interruptible() as interrupts:
         try:
             language.choose(words)

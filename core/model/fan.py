@@ -49,6 +49,11 @@ class Fan:
         return len(self.planes)
 
     @property
+    def has_covariance(self) -> bool:
+        """Whether the covariance is known: it is zero where it is not."""
+        return self.covariance is not None and bool(self.covariance.any())
+
+    @property
     def pis(self) -> Array:
         """Vectors π of all light planes, π·X = 1, (N, 3) in 1/mm."""
         return np.array([plane.pi for plane in self.planes])

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.calibrate.results import PlanePose
+from core.calibrate.results import FanCalibration, PlanePose
 from core.image.exclusion import Exclusion
-from core.model import Pose
-from core.report.facts.of_planes import sentence_on_pose
+from core.model import Fan, LightPlane, Pose
+from core.report.facts.of_planes import plane_cells, sentence_on_pose
+from core.report.wording import Words
 from core.translations import language
 
 NONE, SEEN = np.empty((0, 3)), np.ones((4, 3))
@@ -29,3 +30,11 @@ def test_a_pose_left_out_tells_why_and_how_far_off_it_is_where_that_is_known():
     assert str(sentence_on_pose(replace(out, rms_mm=math.nan))) == f"pose00: left out ({out.reason})"
     unknown = replace(out, exclusion=None, rms_mm=math.nan)
     assert str(sentence_on_pose(unknown)) == "pose00: left out (no reason recorded)"
+
+
+def test_an_angle_whose_uncertainty_the_file_does_not_keep_has_none_rather_than_zero():
+    planes = tuple(LightPlane(np.array([0.0, -1.0, slope]) / 150) for slope in (0.2, 0.3))
+    known, unknown = Fan(planes, np.eye(6) * 1e-12), Fan(planes)
+    for free, sd in ((known, True), (unknown, False)):
+        fan = FanCalibration(known, free, (0.0, 0.0), known.angles, free.angles, 0.0, None, None, ())
+        assert bool(plane_cells(fan)[0][-1].parts(Words())[1]) is sd

@@ -10,6 +10,8 @@ import pytest
 
 from core.errors import InputError
 from core.messages import plain
+from workbench.app import build_window
+from workbench.bench import Bench
 from workbench.main_window import MainWindow
 from workbench.notices import Level, Notices, log_to_file
 from workbench.work import jobs
@@ -77,3 +79,11 @@ def test_the_banner_of_a_failed_job_goes_as_that_job_begins_anew(
     window.bench.measuring.task_ended.emit(task)
     assert window.welcome.banner.isVisible() == there
     assert window.notice_list.count() == 1, "it stays among the messages"
+
+
+def test_a_notice_from_before_the_window_is_there_is_shown_in_it(bench: Bench, qapp: Any) -> None:
+    bench.notices.warning("The wing lab cannot be used.")
+    window = build_window(qapp, bench, "light")
+    assert window.notice_list.count() == 1 and not window.welcome.banner.isHidden()
+    bench.close()
+    window.deleteLater()

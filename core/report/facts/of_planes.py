@@ -59,9 +59,9 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
     about = label("Root mean square distance of the points on this line from its plane")
     held = label("Angle between neighbouring planes that are held to one pencil")
     free = label("The same where each plane is calibrated on its own (± standard deviation)")
-    sds = () if calibration.free.covariance is None else calibration.free.angle_sds
+    sds = calibration.free.angle_sds if calibration.free.has_covariance else ()
     fan = calibration.fan
-    of_d, of_kept = ((), ()) if fan.covariance is None else (fan.distance_sds, fan.angle_sds)
+    of_d, of_kept = (fan.distance_sds, fan.angle_sds) if fan.has_covariance else ((), ())
     held_used = not np.array_equal(fan.pis, calibration.free.pis)
     rows: list[tuple[Fact, ...]] = []
     for place, plane in enumerate(calibration.fan.planes):
