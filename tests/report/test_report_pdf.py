@@ -77,7 +77,7 @@ def test_part_rig_calibrations_software_and_budget_are_named(data, content):
         "Views 11 of 12",
         "Corners off by 0.075 px",
         "Poses 7 of 8",
-        "5 4.929",
+        "5.000 4.929",
         "0.034",
         "Trisect 0.1.0",
         "Fan's centrelines (static speckle) normal 0.041 mm 0.20 0.0082 ∞ 48",
