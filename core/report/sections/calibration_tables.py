@@ -70,5 +70,5 @@ def fan_table(look: ReportLook, calibration: FanCalibration, width: float) -> Ta
     for number, cells in enumerate(planes, start=1):
         shown = [" ± ".join(filter(None, fact.parts(words))) for fact in cells] + [""] * (len(columns) - len(cells))
         rows.append([look.text(f"{number}", "small"), *(look.text(cell, "number") for cell in shown)])
-    shares = (0.08, 0.11, 0.29, 0.17, 0.12, 0.23)[: len(columns) + 1]
+    shares = (0.08, 0.11, 0.28, 0.15, 0.12, 0.26)[: len(columns) + 1]
     return ruled_table(rows, [width * share / sum(shares) for share in shares])
