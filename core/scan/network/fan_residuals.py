@@ -93,7 +93,7 @@ def judge_fan_cells(cells: CellErrors, image_size: tuple[int, int], scale: float
     millimetres = cells.z * cells.depth_mm
     covariance = max(1.0, scale) ** 2 * cells.covariance * np.outer(cells.depth_mm, cells.depth_mm)
     place = over_picture(cells.uv, image_size, GRID)
-    expected = np.sqrt(covariance.diagonal())
+    expected = np.sqrt(np.maximum(covariance.diagonal(), 0.0))  # one that nothing foretells is 0 but for rounding
     return judge_with_covariance(
         Residuals(millimetres, expected, cells.line.astype(np.intp), place, GRID[0] * GRID[1]), covariance
     )
