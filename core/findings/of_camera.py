@@ -46,8 +46,8 @@ ROWS = (
             "views again."),
     Finding("camera.third_radial", Weight.INFORMATION, Effect.NONE,
             "The lens asks for its third radial coefficient k₃, which is solved for: with it, each view fits the "
-            "camera of all others better, by {gain:.1%} ± {gain_error:.1%} of its squared residuals in the mean. It "
-            "moves corners by up to {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm)."),
+            "camera of all others better, by {gain:.1%} (u = {gain_error:.1%}) of its squared residuals in the mean. "
+            "It moves corners by up to {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm)."),
     Finding("camera.corners_err_together", Weight.CAUTION, Effect.WIDENS_U,
             "Corners of one view err together (a target that is not flat, blur, or a detector's bias): the standard "
             "deviations are {times:.1f} times those of independent corners."),

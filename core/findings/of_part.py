@@ -8,7 +8,7 @@ ROWS = (
     # What is stated of the part
     Finding("part.material_assumed", Weight.CAUTION, Effect.WIDENS_U,
             "What the part is made of is not stated ({field}): the uncertainty holds light from below its surface "
-            "as far as nothing excludes it, and an expansion of ({alpha:g} ± {u_alpha:g})·10⁻⁶/K."),
+            "as far as nothing excludes it, and an expansion of {alpha:g}·10⁻⁶/K (u = {u_alpha:g}·10⁻⁶/K)."),
     Finding("part.temperature_assumed", Weight.CAUTION, Effect.WIDENS_U,
             "The part's temperature is not stated ({field}): {celsius:g} °C with a standard uncertainty of {u:g} °C "
             "is assumed."),

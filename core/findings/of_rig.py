@@ -47,9 +47,9 @@ ROWS = (
             "moved since; calibrate again.", fact="rig_changed"),
     Finding("scan.section_changed", Weight.GRAVE, Effect.NO_PROOF,
             "The fan's stripes are skewed otherwise than when it was calibrated (skewness {now:.2f}, then "
-            "{then:.2f}, ± {error:.2f}): their light reaches further to one side, as behind a lens that was knocked "
-            "or smeared, or from a laser in another mode. They may lie up to {shift_px:.1f} px aside, which U "
-            "contains. Clean the lens, set the focus back, or calibrate again.", fact="section_changed"),
+            "{then:.2f}, u of the change {error:.2f}): their light reaches further to one side, as behind a lens that "
+            "was knocked or smeared, or from a laser in another mode. They may lie up to {shift_px:.1f} px aside, "
+            "which U contains. Clean the lens, set the focus back, or calibrate again.", fact="section_changed"),
     # Checks
     Finding("check.another_day", Weight.CAUTION, Effect.NONE,
             "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its "

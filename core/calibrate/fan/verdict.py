@@ -152,7 +152,7 @@ def _sentence(
     angles = tuple(
         Message(
             "fan.angle_with_sd",
-            "{angle:.{places}f}° ± {sd:.{places}f}°",
+            "{angle:.{places}f}° (u = {sd:.{places}f}°)",
             angle=found,
             sd=sd,
             places=max(decimals_of(sd), 0),

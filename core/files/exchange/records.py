@@ -38,9 +38,9 @@ RESULT_COLUMNS = (
 )
 FRAME_COLUMNS = ("name", "used", "reason", "points", "sigma_mm", "stripes", "fan_crossings", "sweep_crossings")
 
-FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "level")
-"""Of what is told of results besides the characteristics. The uncertainty is standard or, as the name says, expanded;
-`low` and `high` are the ends of a 95 % interval."""
+FACT_COLUMNS = ("of", "name", "value", "u", "U", "low", "high", "unit", "level")
+"""Of what is told of results besides the characteristics. `u` is a standard, `U` an expanded uncertainty; `low` and
+`high` are the ends of a 95 % interval."""
 
 
 def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
@@ -51,7 +51,8 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
         "of": of,
         "name": words.known(fact.label),
         "value": words(value) if isinstance(value, (str, Message)) else value,
-        "uncertainty": fact.sd,
+        "u": fact.sd,
+        "U": fact.U,
         "low": low,
         "high": high,
         "unit": fact.unit,

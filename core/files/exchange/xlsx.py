@@ -113,7 +113,7 @@ def _result(one: Characteristic) -> Row:
 
 def _facts(facts: Iterable[tuple[str, Fact]], words: Words) -> list[list[Any]]:
     """Facts as a table, each with its decimals."""
-    numbers = ("value", "uncertainty", "low", "high")
+    numbers = ("value", "u", "U", "low", "high")
     return as_table(FACT_COLUMNS, [_shown(fact_row(of, fact, words), fact.decimals, numbers) for of, fact in facts])
 
 

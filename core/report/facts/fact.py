@@ -44,7 +44,9 @@ class Fact:
     level
         Whom it is for.
     sd
-        Standard or expanded uncertainty in `unit`, as `label` or `tip` say; it decides how many decimals are shown.
+        Standard uncertainty u in `unit`, shown as "(u = …)"; it decides how many decimals are shown.
+    U
+        Expanded uncertainty in `unit`, shown as "± …" in place of u; it decides how many decimals are shown.
     interval
         95 % confidence interval in `unit`.
     signed
@@ -64,6 +66,7 @@ class Fact:
     tip: str | Message = ""
     level: Reader = Reader.TECHNICIAN
     sd: float | None = None
+    U: float | None = None
     interval: tuple[float, float] | None = None
     signed: bool = False
     grade: Grade = ""
@@ -72,16 +75,16 @@ class Fact:
 
     @property
     def decimals(self) -> int | None:
-        """Number of decimals to show: two significant digits of the uncertainty if there is one, else `digits`.
+        r"""Number of decimals to show: two significant digits of the uncertainty if there is one, else `digits`.
 
         Examples
         --------
-        >>> Fact("flatness", 0.0123, "mm", 3, sd=0.0421).decimals, Fact("flatness", 0.0123, "mm", 3).decimals
+        >>> Fact("flatness", 0.0123, "mm", 3, U=0.0421).decimals, Fact("flatness", 0.0123, "mm", 3).decimals
         (3, 3)
         >>> Fact("angle", 5.00213, "°", 3, sd=0.00021).text(Words())
-        '5.00213° ± 0.00021°'
+        '5.00213° (u\xa0=\xa00.00021°)'
         """
-        return decimals_of(self.sd) if self.sd is not None and self.sd > 0 else self.digits
+        return decimals_of(self._uncertainty) if self._uncertainty else self.digits
 
     def title(self, words: Words) -> str:
         """Write the fact's name in the reader's language, with the coverage of its interval: 'Cg (95 %)'."""
@@ -99,23 +102,29 @@ class Fact:
         --------
         >>> Fact("U", 0.0421, "mm", 3).text(Words()), Fact("Cg", 1.5, digits=2, interval=(1.2, 1.84)).text(Words())
         ('0.042 mm', '1.50 (1.20 to 1.84)')
-        >>> Fact("scans", 1204).text(Words()), Fact("alpha", 2410.42, "px", 2, sd=0.31).text(Words())
-        ('1\xa0204', '2410.42 ± 0.31 px')
+        >>> Fact("scans", 1204).text(Words()), Fact("thickness", 50.0021, "mm", 3, U=0.0199).text(Words())
+        ('1\xa0204', '50.002 ± 0.020 mm')
+        >>> Fact("alpha", 2410.42, "px", 2, sd=0.31).text(Words())
+        '2410.42 px (u\xa0=\xa00.31 px)'
         """
-        said, sd = self.parts(words)
+        said, uncertainty = self.parts(words)
         if self.value is None or isinstance(self.value, (str, Message)):
             return said
         end = "°" if self.unit == "°" else ""
-        said = f"{said}{end} ± {sd}{end}" if sd else f"{said}{end}"
-        if self.unit and not end:
-            said = f"{said} {self.unit}"
+        after = f" {self.unit}" if self.unit and not end else end
+        if self.U is not None:
+            said = f"{said}{end} ± {uncertainty}{after}"
+        elif uncertainty:
+            said = f"{said}{after} (u{NO_BREAK_SPACE}={NO_BREAK_SPACE}{uncertainty}{after})"
+        else:
+            said = f"{said}{after}"
         if self.interval is None:
             return said
         low, high = (self._number(end, words) for end in self.interval)
         return words("{value} ({low} to {high})", value=said, low=low, high=high)
 
     def parts(self, words: Words) -> tuple[str, str]:
-        r"""Write value and uncertainty as two cells of a table, without the unit; "" for no uncertainty.
+        r"""Write value and uncertainty, U or else u, as two cells of a table, without the unit; "" for none.
 
         Examples
         --------
@@ -126,13 +135,17 @@ class Fact:
             return words("not known"), ""
         if isinstance(self.value, (str, Message)):
             return words(self.value), ""
-        sd = "" if self.sd is None else self._number(self.sd, words, signed=False)
-        return self._number(self.value, words), sd
+        known = self._uncertainty
+        return self._number(self.value, words), "" if known is None else self._number(known, words, signed=False)
 
     def column(self, words: Words) -> str:
         """Write the fact's name with its unit, as the head of a table's column."""
         title = self.title(words)
         return words.in_unit(title, self.unit) if self.unit else title
+
+    @property
+    def _uncertainty(self) -> float | None:
+        return self.sd if self.U is None else self.U
 
     def _number(self, value: float, words: Words, *, signed: bool | None = None) -> str:
         signed = self.signed if signed is None else signed

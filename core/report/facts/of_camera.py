@@ -89,5 +89,5 @@ def parameter_fact(name: str, value: float, sd: float) -> Fact:
     """Make the fact on the camera parameter `name`; `sd` is its standard deviation, 0 if it has none."""
     symbol, unit, tip = PARAMETERS[name]
     digits, spread = (decimals_of(sd), sd) if sd > 0 else (None, None)
-    about = Message("told.tip_parameter", "{what} (± standard deviation)", what=tip)
+    about = Message("told.tip_parameter", "{what}, with its standard uncertainty u", what=tip)
     return Fact(symbol, value, unit, digits, about, Reader.AUDITOR, sd=spread)

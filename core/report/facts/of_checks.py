@@ -56,7 +56,7 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
             Message("told.step_off", "step of {step_mm:g} mm off by", step_mm=check.step_mm),
             _known(check.error_mm), "mm", 3,
             label("How much too high it would be measured now; not corrected. ± could have been overlooked (k = 2)"),
-            Reader.AUDITOR, sd=_known(check.unseen_mm), signed=True,
+            Reader.AUDITOR, U=_known(check.unseen_mm), signed=True,
         ),
         *(_allowed(check, chart) if chart is not None else ()),
         Fact(
@@ -180,7 +180,7 @@ def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
         Fact(
             Message("told.step_larger", "step of {step_mm:g} mm larger by", step_mm=done.step_mm),
             done.correction_mm, "mm", 3, label("± is what camera and fan leave uncertain of it (k = 2)"),
-            sd=2 * done.u_mm, signed=True,
+            U=2 * done.u_mm, signed=True,
         ),
         Fact(CHANCE, record.p_after, tip=was_chance, level=Reader.AUDITOR, significant=2),
         *_changes(done),
@@ -203,7 +203,7 @@ def _changes(done: ProposedReadjustment) -> tuple[Fact, ...]:
         *((drifted, axis, 1.0, "px") for axis in along[:2]),
         (label("focal length"), label("as a share"), 1e6, "·10⁻⁶"),
     ]
-    about = label("± is the standard uncertainty (k = 1)")
+    about = label("u is the standard uncertainty (k = 1)")
     return tuple(
         Fact(
             Message("told.named", "{of}, {name}", of=of, name=axis), by * float(change), unit,
@@ -222,17 +222,17 @@ def artefact_facts(check: ArtefactCheck) -> tuple[Fact, ...]:
         Fact(
             label("error"), check.error_mm, "mm", decimals_of(2 * check.u_error_mm),
             label("Measured − certified. ± is U (k = 2) of both together: a smaller error is not detected"),
-            sd=2 * check.u_error_mm, signed=True,
+            U=2 * check.u_error_mm, signed=True,
         ),
         Fact(
             label("measured"), check.measured_mm, "mm", decimals_of(U),
             Message("told.tip_compared", "{what}; ± is U (k = 2)", what=check.characteristic or KINDS[known.kind]),
-            sd=U,
+            U=U,
         ),
         Fact(
             label("certified"), known.value_mm, "mm", decimals_of(known.U_mm),
             Message("told.tip_certified", "By its certificate; ± is U (k = {k:g})", k=known.k), Reader.AUDITOR,
-            sd=known.U_mm,
+            U=known.U_mm,
         ),
         Fact("E_n", check.e_n, digits=2, tip=label("Error over the U of both together"), level=Reader.AUDITOR),
         Fact(label("certificate"), known.certificate or label("not stated"), level=Reader.AUDITOR),

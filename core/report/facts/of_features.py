@@ -23,7 +23,7 @@ def characteristic_facts(one: Characteristic) -> tuple[Fact, ...]:
     digits, U = decimals_of(factor * one.U), factor * one.U if math.isfinite(one.U) else None
     name = Message("told.with_k", "{name} (k = {k:g})", name=result_name(one), k=one.k)
     meaning = label("± is the expanded uncertainty U: k times the standard uncertainty")
-    facts = [Fact(name, factor * one.value, unit, digits, one.rule or meaning, sd=U)]
+    facts = [Fact(name, factor * one.value, unit, digits, one.rule or meaning, U=U)]
     if one.limits is not None and one.deviation is not None:
         nominal = factor * one.limits.nominal
         facts += [

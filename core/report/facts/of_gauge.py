@@ -40,7 +40,7 @@ def face_facts(face: Face) -> tuple[Fact, ...]:
     about = label("Width of the zone that holds the face's form, free of its points' noise, and its U (k = 2)")
     U = None if face.flatness_u_mm is None else 2 * face.flatness_u_mm
     return (
-        Fact(label("flatness"), face.flatness_mm, "mm", 3, about, Reader.AUDITOR, sd=U),
+        Fact(label("flatness"), face.flatness_mm, "mm", 3, about, Reader.AUDITOR, U=U),
         Fact(label("points"), len(face.indices), tip=label("Points the plane rests on"), level=Reader.AUDITOR),
         Fact(label("RMS of the residuals"), face.rms_mm, "mm", 3, label("Of the points used"), Reader.METROLOGIST),
     )

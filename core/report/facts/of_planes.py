@@ -58,7 +58,7 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
     """Make the table rows of the light planes, one each: fit, normal, distance, and the angle to the next plane."""
     about = label("Root mean square distance of the points on this line from its plane")
     held = label("Angle between neighbouring planes that are held to one pencil")
-    free = label("The same where each plane is calibrated on its own (± standard deviation)")
+    free = label("The same where each plane is calibrated on its own, with its standard uncertainty u")
     sds = calibration.free.angle_sds if calibration.free.has_covariance else ()
     fan = calibration.fan
     of_d, of_kept = (fan.distance_sds, fan.angle_sds) if fan.has_covariance else ((), ())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable, Table
 
@@ -68,7 +70,7 @@ def fan_table(look: ReportLook, calibration: FanCalibration, width: float) -> Ta
     columns = [fact.column(words) for fact in planes[0]]
     rows: list[list[Flowable]] = [heads(look, "Line", *columns, numbers=range(1, len(columns) + 1))]
     for number, cells in enumerate(planes, start=1):
-        shown = [" ± ".join(filter(None, fact.parts(words))) for fact in cells] + [""] * (len(columns) - len(cells))
+        shown = [replace(fact, unit="").text(words) for fact in cells] + [""] * (len(columns) - len(cells))
         rows.append([look.text(f"{number}", "small"), *(look.text(cell, "number") for cell in shown)])
     shares = (0.08, 0.11, 0.28, 0.15, 0.12, 0.26)[: len(columns) + 1]
     return ruled_table(rows, [width * share / sum(shares) for share in shares])

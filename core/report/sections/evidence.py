@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
@@ -59,7 +60,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
     columns = [fact.column(words) for fact in tables[0]]
     rows: list[list[Flowable]] = [heads(look, "Artefact", *columns, numbers=(2, 3, 4, 5))]
     for one, facts in zip(content.artefacts, tables, strict=True):
-        shown = [" ± ".join(filter(None, fact.parts(words))) for fact in facts]
+        shown = [replace(fact, unit="").text(words) for fact in facts]
         cells = [look.text(text, "number" if 1 <= place <= 4 else "small") for place, text in enumerate(shown)]
         title = f"{one.artefact.id} ({words(KINDS[one.artefact.kind])})"
         rows.append([look.text(title, "small"), *cells])

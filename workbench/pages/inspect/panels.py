@@ -60,7 +60,7 @@ class PartPanel(QWidget):
             tr("Light may come from below the surface of all but metal: U holds it as far as nothing excludes it."),
         )
         assumed = tr("assumed")
-        help = tr("While it was scanned; empty: 20 °C ± 3 °C (u).")
+        help = tr("While it was scanned; empty: 20 °C with u = 3 °C.")
         self._number(
             "celsius", tr("Temperature"), NumberRange(-50, 200, decimals=2, unit="°C", none_text=assumed), help
         )
@@ -285,7 +285,7 @@ class PicksPanel(QWidget):
         self.frame = muted()
         self.help = muted(
             tr(
-                "± of a point is the standard uncertainty (sd) of its depth, u of a distance the two points' share. "
+                "σ of a point is the standard uncertainty of its depth, u of a distance the two points' share. "
                 "The calibrations' share is not in them. Points and distances are not kept with the project."
             )
         )

@@ -109,7 +109,7 @@ def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
     u, v = pick.uv
     picture = PurePosixPath(pick.frame).name or tr("fan, no frame")
     return place, tr(
-        "± {sigma} mm (sd), {frame}, u {u} v {v} px",
+        "σ = {sigma} mm, {frame}, u {u} v {v} px",
         sigma=wording().fixed(pick.sigma_mm, decimals),
         frame=picture,
         u=wording().fixed(u, 1),

@@ -1,5 +1,6 @@
 """The camera page, clicked."""
 
+import re
 from dataclasses import replace
 from typing import cast
 
@@ -165,7 +166,7 @@ def test_what_is_missing_is_told_in_words(solved):
 
 def test_parameters_are_shown_with_their_standard_deviation_and_unit(solved):
     focal = solved.result.rows.text_of("α (fx)")
-    assert "±" in focal and focal.endswith(" px")
+    assert re.fullmatch(r"[\d.]+ px \(u\xa0=\xa0[\d.]+ px\)", focal)
 
 
 def test_the_target_form_edits_the_project(page, qtbot):
@@ -315,7 +316,7 @@ def test_each_grade_of_a_calibration_is_told_with_its_limits(solved):
 def test_a_parameter_is_written_with_the_decimal_sign_of_the_language(qapp: QApplication) -> None:
     choose(language("de"), qapp)
     try:
-        assert fact_row(parameter_fact("alpha", -2495.187, 0.132))[1] == "−2495,19 ± 0,13 px"
+        assert fact_row(parameter_fact("alpha", -2495.187, 0.132))[1] == "−2495,19 px (u\xa0=\xa00,13 px)"
     finally:
         choose(language("en"), qapp)
 

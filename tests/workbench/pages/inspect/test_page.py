@@ -403,7 +403,7 @@ def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
     shown.refreshing.at_once()
     text = text_in(shown.picks.list, 0)
     assert not shown.picks.list.isHidden()
-    assert text.startswith("P1   x ") and " mm\n± 0.0" in text and "(sd)" in text and "px" in text
+    assert text.startswith("P1   x ") and " mm\nσ = 0.0" in text and "px" in text
     assert "P1" in {name for _, name in shown.surface.scene._scene.items}
     shown.surface.scene.stop_drawing()
     shown.refreshing.at_once()
