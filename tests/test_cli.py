@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pytest
@@ -58,6 +59,13 @@ def test_run_json_has_a_hash_of_every_input_and_a_record_of_every_frame(simulate
     assert all(frame["points"] > 0 or frame["reason"] for frame in record["frames"])
     assert set(record["timings_s"]) == {"camera", "planes", "scan", "gauge", "report"}
     assert record["version"] == __version__
+
+
+def test_page_one_of_the_report_says_that_a_simulated_set_is_simulated(simulated, measured):
+    assert tomllib.loads((simulated / "rig.toml").read_text())["simulated"] is True
+    assert json.loads((measured / "run.json").read_text())["simulated"] is True
+    page = " ".join(PdfReader(str(measured / "report.pdf")).pages[0].extract_text().split())
+    assert "Simulated: every picture was rendered by a program, and no real part was measured." in page
 
 
 def test_the_report_names_part_thickness_and_version(measured):

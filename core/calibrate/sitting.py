@@ -12,6 +12,8 @@ from datetime import datetime, timedelta
 
 FRESH_HOURS = 4.0
 """From the first picture of the planes to the last of the scan, at most, where the rig's description does not say."""
+SIMULATED = "simulated"
+"""Kind of source, and so the first word of the camera's name, of pictures that the simulated rig took."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +23,11 @@ class Acquisition:
     camera: str
     first: datetime
     last: datetime
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the simulated rig took the pictures."""
+        return self.camera.split(" ")[0] == SIMULATED
 
 
 def hours_of_sitting(

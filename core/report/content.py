@@ -303,6 +303,8 @@ class ReportContent:
         Where the project's audit trail stood; None where there is none.
     attachments
         By name, the JSON files of the results as they are, to go into the file.
+    simulated
+        Whether the scan's pictures are rendered by a program; None: not known.
 
     Raises
     ------
@@ -357,6 +359,7 @@ class ReportContent:
     template: ReportTemplate = field(default_factory=ReportTemplate)
     audit: AuditMark | None = None
     attachments: Mapping[str, bytes] = field(default_factory=dict)
+    simulated: bool | None = None
     view: SeenFrom | None = None
     reported: date | None = None
     certificates: Mapping[str, Certificate] = field(default_factory=dict)

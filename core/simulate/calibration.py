@@ -63,6 +63,7 @@ def rig_toml(scenario: Scenario) -> str:
             plane_board=TRUE if scenario.stated else BoardTolerance(),
             part=_part(scenario) if scenario.stated else Part(),
             mosaic="RGGB" if scenario.sensor.colour and scenario.sensor.raw else None,
+            simulated=True,
         )
     )
 

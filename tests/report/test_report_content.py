@@ -12,6 +12,7 @@ from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import ACCENT, ALARM, ReportLook, color, prepare_reportlab
 from core.report.pdf import LIMITS
 from core.report.sections.evidence import warnings
+from core.report.sections.head import head
 from core.report.sections.standard import faces_table
 from core.report.wording import Words
 
@@ -89,3 +90,10 @@ def test_the_flatness_of_a_face_is_printed_with_its_uncertainty(content):
     table = next(part for part in faces_table(look, gauge) if hasattr(part, "_cellvalues"))
     (flatness, *_) = table._cellvalues[1][1:]
     assert flatness.getPlainText().replace("\xa0", " ") == "0.016 ± 0.019"
+
+
+@pytest.mark.parametrize(("simulated", "told"), [(True, 1), (False, 0), (None, 0)])
+def test_only_of_a_simulated_scan_the_head_says_so(simulated, told):
+    content = replace(block_content(), simulated=simulated)
+    said = [part for part in head(ReportLook(Words(), ACCENT), content) if isinstance(part, Paragraph)]
+    assert [part.getPlainText().startswith("Simulated: ") for part in said] == [True] * told

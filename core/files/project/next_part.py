@@ -86,6 +86,7 @@ def _renewed(folder: Path, file: ProjectFile, serial: str, operator: str, name: 
             before.rig,
             part=replace(before.rig.part, celsius=None, u_celsius=None),
             air=replace(before.rig.air, scanned=None),
+            simulated=None,
         ),
         sources=replace(before.sources, scan=""),
         options=replace(before.options, excluded=kept),

@@ -119,6 +119,12 @@ class RecordingSet:
         return FolderLog.of(self.folders.get(part))
 
     @property
+    def simulated(self) -> bool | None:
+        """Whether the scan's pictures are rendered, by rig.toml or the recording's log; None if neither says it."""
+        taken = self.log("scan").acquisition(self.frames)
+        return True if taken is not None and taken.simulated else self.rig.simulated
+
+    @property
     def rig_file(self) -> Path:
         """Path of the set's rig.toml, whether it is there or not."""
         return next((folder.parent for folder in self.folders.values()), Path(self.name)) / RIG

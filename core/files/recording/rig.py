@@ -490,6 +490,7 @@ class RigTables(Table):
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
         description="a name of at most 40 letters, digits, - and _",
     )
+    simulated: bool | None = Field(None, description="true or false")
 
 
 TARGETS = ("camera_target", "plane_target", "reference_target")
@@ -599,6 +600,8 @@ class Rig:
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
     certificates: Mapping[str, Certificate] = field(default_factory=dict, hash=False)
     """By the names of the targets' tables, the certificates that are stated; what they say is only reported."""
+    simulated: bool | None = None
+    """Whether the pictures are rendered by a program; None: not known."""
 
     @property
     def one_target(self) -> bool:
@@ -717,6 +720,7 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         part=stated_part(tables),
         unstated=unstated,
         name=tables.name or "",
+        simulated=tables.simulated,
         **stated,
     )
 
@@ -731,6 +735,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     """Make the tables of rig.toml for a rig, without those of which it states nothing; values are not checked."""
     tables = {
         "name": rig.name or None,
+        "simulated": rig.simulated,
         "channel": rig.channel,
         "mosaic": rig.mosaic,
         "channels": _present(asdict(rig.channels)) or None,

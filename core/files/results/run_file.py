@@ -53,6 +53,8 @@ class RunRecord:
         What became of every frame.
     made_at
         By measuring step: when it began, as far as that is known. A calibration taken from elsewhere keeps its own.
+    simulated
+        Whether the scan's pictures are rendered by a program; None: not known.
     """
 
     set_name: str
@@ -64,6 +66,7 @@ class RunRecord:
     inputs: Mapping[str, str] = field(default_factory=dict)
     frames: tuple[FrameRecord, ...] = ()
     made_at: Mapping[str, datetime] = field(default_factory=dict)
+    simulated: bool | None = None
 
     def with_step(
         self,
@@ -131,6 +134,7 @@ class _RunFile(ResultFile):
     inputs: dict[str, str] = Field(default_factory=dict)
     frames: list[_Frame] = Field(default_factory=list)
     made_at: dict[str, Time] = Field(default_factory=dict, description="a table of times")
+    simulated: bool | None = None
 
 
 def write_run(path: Path, record: RunRecord) -> None:
@@ -141,6 +145,7 @@ def write_run(path: Path, record: RunRecord) -> None:
             "version": __version__,
             "set": record.set_name,
             "part": record.part,
+            **({} if record.simulated is None else {"simulated": record.simulated}),
             "measured_at": record.measured_at.isoformat(timespec="seconds"),
             "made_at": {step: at.isoformat(timespec="seconds") for step, at in record.made_at.items()},
             "timings_s": record.timings,
@@ -173,6 +178,7 @@ def read_run(path: Path) -> RunRecord:
         inputs=file.inputs,
         frames=tuple(_record(frame) for frame in file.frames),
         made_at=file.made_at,
+        simulated=file.simulated,
     )
 
 

@@ -19,6 +19,7 @@ from core.acquire.drivers.opencv_camera import OpenCVSource
 from core.acquire.replay import FRAMES_HELD, ReplaySource
 from core.acquire.source import FrameSource, SourceChoice, SourceInfo
 from core.acquire.source_kind import SourceKind
+from core.calibrate.sitting import SIMULATED as BY_SIMULATED_RIG
 from core.errors import InputError
 from core.files.pictures import read_picture
 from core.files.recording.replay_pictures import ReplayPictures
@@ -158,11 +159,11 @@ def _list_simulated() -> tuple[SourceInfo, ...]:
         'object = "sphere"': Message("source.sphere", "Sphere of 50 mm"),
         'object = "mask"': Message("source.mask", "Mask of a face"),
     }
-    return tuple(SourceInfo(SourceChoice("simulated", text), thing, size) for text, thing in things.items())
+    return tuple(SourceInfo(SourceChoice(BY_SIMULATED_RIG, text), thing, size) for text, thing in things.items())
 
 
 SIMULATED = SourceKind(
-    "simulated",
+    BY_SIMULATED_RIG,
     Message("source.simulated", "Simulated rig"),
     Message("source.simulated_help", "A camera and lasers that exist only in this program, moved by hand in real time"),
     Message("source.scene", "Scene"),

@@ -190,6 +190,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         method=WITHOUT_SWEEPS if profiled else METHOD_IN_WORDS.get(method, ""),
         version=__version__,
         timestamp=record.measured_at,
+        simulated=record.simulated,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
     content = replace(with_inspection(content, out), compared=_compared(out), check=_check(out, calibration))

@@ -163,7 +163,8 @@ class Workspace:
         if self.part:
             record = replace(record, part=self.part)
         if measures:
-            record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
+            made_at = {**record.made_at, name: begun}
+            record = replace(record, measured_at=begun, made_at=made_at, simulated=self.recording_set.simulated)
         if log.frames:
             record = replace(record, frames=tuple(log.frames))
         write_run(self.path("run"), record)

@@ -6,7 +6,7 @@ import io
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, HRFlowable, Image
+from reportlab.platypus import Flowable, HRFlowable, Image, Spacer
 
 from core.messages import label
 from core.report.content import ReportContent
@@ -42,7 +42,17 @@ def head(look: ReportLook, content: ReportContent) -> list[Flowable]:
         pairs_table(look, {label: value for label, value in pairs.items() if value}, column, LABEL)
         for pairs in (_job(look, content), _evidence(look, content))
     ]
-    return [top, rule, side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
+    return [top, rule, *_simulated(look, content), side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
+
+
+def _simulated(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """What has to be known first of a result that no real part has; nothing where the pictures are not known to be."""
+    if not content.simulated:
+        return []
+    said = look.fixed_text(
+        "Simulated: every picture was rendered by a program, and no real part was measured.", "small_strong"
+    )
+    return [said, Spacer(0, 1 * mm)]
 
 
 def _job(look: ReportLook, content: ReportContent) -> dict[str, str]:

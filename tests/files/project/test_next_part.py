@@ -89,6 +89,12 @@ def test_the_temperature_of_the_last_part_is_not_taken_for_that_of_the_next(proj
     assert after == Part(material="steel")
 
 
+def test_a_simulated_part_does_not_make_the_next_one_simulated(project: Path, tmp_path: Path) -> None:
+    file = read_project(project)
+    create_project(project, replace(file, project=replace(file.project, rig=replace(file.project.rig, simulated=True))))
+    assert read_project(next_part(project, tmp_path / "Block 2", "2", "Ada")).project.rig.simulated is None
+
+
 def test_the_people_go_along_with_their_roles_so_that_limits_stay_closed(project: Path, tmp_path: Path) -> None:
     people = Rules((person("Ada", "administrator", "1234"), person("Bo", "operator", "5678")), reasons=True)
     write_rules(project, people)
