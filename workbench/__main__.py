@@ -3,10 +3,13 @@
 import sys
 from importlib.util import find_spec
 
+from core.extras import install
 from core.messages import Message
 
 INSTALL = Message(
-    "window.install", "The window needs PySide6 and what else draws it: install them with pip install 'trisect[window]'"
+    "window.install",
+    "The window needs PySide6 and what else draws it: install them with make app, or {command}",
+    command=install("window"),
 )
 
 

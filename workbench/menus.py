@@ -11,9 +11,10 @@ from PySide6.QtGui import QAction, QActionGroup, QKeySequence, QUndoStack
 from PySide6.QtWidgets import QMainWindow, QMenu, QMessageBox
 
 from core import __version__
+from core.extras import install
 from core.messages import label
 from core.translations import languages, own_name
-from workbench.language import language_name, tr
+from workbench.language import language_name, text_of, tr
 from workbench.refresh import Refresh
 from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
@@ -115,7 +116,7 @@ def why_not(name: str, facts: MenuFacts, *, needs_project: bool = False) -> str:
     if not facts.page:
         return tr("Open a project first.")
     if name == "console" and facts.no_console:
-        return tr("The console needs an extra: pip install 'trisect[console]'.")
+        return tr("The console needs an extra: install it with {command}.", command=text_of(install("console")))
     if name in OF_A_PAGE and name not in facts.does:
         return tr("There is nothing of the kind on this page.")
     if name == "back" and facts.page == STEPS[0].name:

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError, WrongValue
+from core.extras import install
 from core.files.limits import STEP_BYTES, check_file
 from core.messages import Message
 from core.model.arrays import Array
@@ -55,7 +56,9 @@ def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Ar
     if find_spec("cascadio") is None or find_spec("trimesh") is None:
         raise InputError(
             Message(
-                "file.install_step", "STEP needs cascadio and trimesh: install them with pip install 'trisect[step]'"
+                "file.install_step",
+                "STEP needs cascadio and trimesh: install them with {command}",
+                command=install("step"),
             ),
             where=path,
         )

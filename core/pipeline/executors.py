@@ -14,12 +14,15 @@ from multiprocessing.connection import wait
 from typing import Any
 
 from core.errors import InputError
+from core.extras import install
 from core.messages import Message
 from core.threads import cores
 
 PROCESSES, THREADS, DASK = "processes", "threads", "dask://"
 INSTALL = Message(
-    "options.install_cluster", "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'"
+    "options.install_cluster",
+    "A cluster needs Dask's distributed: install it with {command}",
+    command=install("cluster"),
 )
 MOST_WORKERS = 61
 """Sets measured at a time on one machine: Windows waits for no more processes at once."""

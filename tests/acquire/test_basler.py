@@ -26,7 +26,7 @@ def basler(serial=EMULATED, setup=None):
 @pytest.fixture
 def pylon(monkeypatch):
     """The driver with one emulated camera plugged in."""
-    module = pytest.importorskip("pypylon.pylon", reason="pypylon is not installed (pip install 'trisect[basler]')")
+    module = pytest.importorskip("pypylon.pylon", reason="pypylon is not installed (pip install -e '.[basler]')")
     monkeypatch.setenv("PYLON_CAMEMU", "1")
     return module
 
@@ -255,5 +255,5 @@ def test_without_pypylon_one_sentence_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pypylon", None)
     monkeypatch.setitem(sys.modules, "pypylon.pylon", None)
     for wanted in (list_cameras, basler("").open):
-        with pytest.raises(InputError, match=r"pip install 'trisect\[basler\]'"):
+        with pytest.raises(InputError, match=r"pip install -e '\.\[basler\]'"):
             wanted()

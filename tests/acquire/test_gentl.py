@@ -20,7 +20,7 @@ RED = "VikyTL_DEV_red"
 @pytest.fixture
 def producer(monkeypatch):
     """The producer of simulated devices that comes with harvesters' own library."""
-    genicam = pytest.importorskip("genicam", reason="harvesters is not installed (pip install 'trisect[genicam]')")
+    genicam = pytest.importorskip("genicam", reason="harvesters is not installed (pip install -e '.[genicam]')")
     folder = Path(genicam.__file__).parent
     if not (folder / "viky.cti").is_file():
         pytest.skip("this release of genicam brings no producer")
@@ -126,7 +126,7 @@ def test_without_any_producer_one_sentence_says_what_to_install(monkeypatch, tmp
 def test_without_harvesters_one_sentence_says_what_to_install(producer, monkeypatch):
     monkeypatch.setitem(sys.modules, "harvesters.core", None)
     for wanted in (list_cameras, partial(connect, "")):
-        with pytest.raises(InputError, match=r"pip install 'trisect\[genicam\]'"):
+        with pytest.raises(InputError, match=r"pip install -e '\.\[genicam\]'"):
             wanted()
 
 

@@ -85,7 +85,7 @@ def test_reading_can_be_cancelled():
 
 def test_without_its_extra_one_sentence_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "cascadio", None)
-    with pytest.raises(InputError, match=r"pip install 'trisect\[step\]'"):
+    with pytest.raises(InputError, match=r"pip install -e '\.\[step\]'"):
         read_nominal(PLATE, 0.1)
 
 

@@ -237,7 +237,7 @@ def test_without_dask_one_sentence_says_what_to_install(quick, tmp_path, monkeyp
     monkeypatch.setitem(sys.modules, "distributed", None)
     said = trisect("batch", *sets(tmp_path, "a"), "--out", tmp_path / "out", "--executor", "dask://localhost:1")
     assert said.code == 2
-    assert "pip install 'trisect[cluster]'" in said.sentence
+    assert "pip install -e '.[cluster]'" in said.sentence
 
 
 QUICK = Options(method=Method.THREE_CROSSINGS, sigma_cut_mm=0.5)
@@ -285,7 +285,7 @@ def test_processes_measure_the_very_same_as_a_run_and_pgm_frames_as_png_frames(t
 
 @pytest.mark.accuracy
 def test_a_dask_cluster_of_separate_processes_measures_the_very_same_as_a_run(tiny, tmp_path):
-    distributed = pytest.importorskip("distributed", reason="pip install 'trisect[cluster]'")
+    distributed = pytest.importorskip("distributed", reason="pip install -e '.[cluster]'")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None, local_directory=str(tmp_path)
     ) as cluster:

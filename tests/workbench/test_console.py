@@ -180,7 +180,7 @@ def test_without_its_extra_the_entry_is_grey_and_says_what_to_install(window: Ma
     assert why_not("console", MenuFacts("", frozenset(), job=False)) == "Open a project first."
     facts = MenuFacts("scan", frozenset(), job=False)
     assert why_not("console", facts) == ""
-    assert "pip install 'trisect[console]'" in why_not("console", facts._replace(no_console=True))
+    assert "pip install -e '.[console]'" in why_not("console", facts._replace(no_console=True))
     assert not window.menus.actions["console"].isEnabled()
 
 

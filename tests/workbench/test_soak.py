@@ -10,7 +10,7 @@ pytestmark = pytest.mark.accuracy
 
 
 def test_every_frame_of_a_camera_is_recorded_or_counted_and_the_window_never_freezes():
-    pytest.importorskip("pypylon", reason="pypylon is not installed (pip install 'trisect[basler]')")
+    pytest.importorskip("pypylon", reason="pypylon is not installed (pip install -e '.[basler]')")
     command = [sys.executable, "-m", "tests.soak", "--window", "--seconds", "4", "--scale", "0.25"]
     ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=150)
     print(ran.stdout)

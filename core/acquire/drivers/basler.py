@@ -14,11 +14,14 @@ from core.acquire.drivers.genicam_features import TRIGGER, Features
 from core.acquire.source import SourceChoice, SourceInfo
 from core.acquire.source_kind import DEVICE, FIRST_CAMERA, GENICAM_SETTINGS, SourceKind
 from core.errors import InputError
+from core.extras import install
 from core.messages import Message
 
 MODULE = "pypylon"
 INSTALL = Message(
-    "source.install_pypylon", "Basler cameras need pypylon: install it with pip install 'trisect[basler]'"
+    "source.install_pypylon",
+    "Basler cameras need pypylon: install it with {command}",
+    command=install("basler"),
 )
 
 READY_MS = 200

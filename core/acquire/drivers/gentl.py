@@ -19,11 +19,14 @@ from core.acquire.drivers.genicam_features import Features
 from core.acquire.source import SourceChoice, SourceInfo
 from core.acquire.source_kind import DEVICE, FIRST_CAMERA, GENICAM_SETTINGS, SourceKind
 from core.errors import InputError
+from core.extras import install
 from core.messages import Message
 
 MODULE = "harvesters"
 INSTALL = Message(
-    "source.install_harvesters", "GenICam cameras need harvesters: install it with pip install 'trisect[genicam]'"
+    "source.install_harvesters",
+    "GenICam cameras need harvesters: install it with {command}",
+    command=install("genicam"),
 )
 
 PATH = "GENICAM_GENTL64_PATH"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError, words_of
+from core.extras import install
 from core.files import cad_part
 from core.files.limits import LARGEST, check_file
 from core.files.reading import MISSING, read_bytes
@@ -138,7 +139,8 @@ def _e57(path: Path) -> OtherSurface:
         import pye57  # an extra
     except ImportError as missing:
         raise InputError(
-            Message("export.install_pye57", "E57 needs pye57: install it with pip install 'trisect[e57]'"), where=path
+            Message("export.install_pye57", "E57 needs pye57: install it with {command}", command=install("e57")),
+            where=path,
         ) from missing
     if not path.exists():
         raise InputError(MISSING, where=path)

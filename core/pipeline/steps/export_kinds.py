@@ -9,6 +9,7 @@ from pathlib import Path
 
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
+from core.extras import install
 from core.files.atomic import write_bytes
 from core.files.exchange.dcc import write_dcc
 from core.files.exchange.dfq import write_dfq
@@ -167,7 +168,8 @@ def _e57(results: Results, path: Path, _: Progress) -> None:
         from core.files.exchange.e57 import write_e57  # its library is an extra
     except ImportError as missing:
         raise InputError(
-            Message("export.install_pye57", "E57 needs pye57: install it with pip install 'trisect[e57]'"), where=path
+            Message("export.install_pye57", "E57 needs pye57: install it with {command}", command=install("e57")),
+            where=path,
         ) from missing
     content = results.content
     calibration = "-".join(mark.id for mark in content.calibrations)
@@ -181,7 +183,8 @@ def _dxf(results: Results, path: Path, _: Progress) -> None:
         from core.files.exchange.dxf import write_dxf  # its library is an extra
     except ImportError as missing:
         raise InputError(
-            Message("export.install_ezdxf", "DXF needs ezdxf: install it with pip install 'trisect[dxf]'"), where=path
+            Message("export.install_ezdxf", "DXF needs ezdxf: install it with {command}", command=install("dxf")),
+            where=path,
         ) from missing
     points = read_cloud(results.folder / FILES["cloud"]).cloud.points
     write_dxf(path, read_geometry(results.folder / FILES["inspection"], points, results.frame))
