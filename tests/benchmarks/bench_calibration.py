@@ -18,7 +18,7 @@ from tests.image.rendered_targets import Noise, circles, pose, render, rig
 
 def test_the_camera_from_fourteen_views(benchmark, capsys):
     views = synthetic_views(15)
-    points = [np.c_[view.xy, np.zeros(len(view.xy))].astype(np.float32) for view in views]
+    points = [view.points.astype(np.float32) for view in views]
     seen = [view.uv.astype(np.float32) for view in views]
     ours = processor_ms(lambda: calibrate_camera(views, TRUTH.image_size), 2)
     theirs = processor_ms(lambda: cv2.calibrateCamera(points, seen, TRUTH.image_size, None, None), 2)
@@ -70,6 +70,10 @@ def test_the_pictures_of_121_poses_of_a_circle_grid(benchmark, capsys):
     table(capsys, "Pictures of a 7 × 7 circle grid with a laser line", rows)
 
 
+TIMES_AS_LONG = 4.0
+"""Of OpenCV's search for a board that is not there, at most; it was 13 times once."""
+
+
 def test_a_picture_of_noise_without_a_board(benchmark, capsys):
     random = np.random.default_rng(1)
     noise = random.normal(110, 25, (1374, 1920)).clip(0, 255).astype(np.uint8)
@@ -90,3 +94,4 @@ def test_a_picture_of_noise_without_a_board(benchmark, capsys):
         "OpenCV's SB detector": f"{theirs:6.0f} ms   ({ours / theirs:.1f} x)",
     }
     table(capsys, "A picture of noise, 1920 × 1374 px", rows)
+    assert ours < TIMES_AS_LONG * theirs

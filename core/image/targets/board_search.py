@@ -7,6 +7,7 @@ two detectors. Whatever finds it, the board's own squares and ends decide whethe
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,11 +15,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
-from scipy.spatial import cKDTree
 
+from core.compiled import compiled, inlined
 from core.image.targets.corners import grow, is_checkered, is_even, refined, spacing
 from core.image.targets.picture import enlarged, reduced, resized, without_stripes
 from core.model.arrays import Array
+from core.model.small_arrays import Index, new_indices, new_row, new_table, smallest
 
 MOST_BOARDS = 12
 """Seeds followed in one picture."""
@@ -55,6 +57,20 @@ LEAST_EVEN = 0.75
 
 LEAST_TWOFOLD = 0.4
 """Share of it that rises and falls twice around; edges at 35° to each other still have half."""
+
+LIKE_ITSELF = -0.3
+"""Cosine of twice the angle between the light squares of two saddles, from which on they are no neighbours in a grid:
++1 where they lie alike, −1 at a right angle."""
+
+FARTHEST_ASIDE = 0.27
+"""Of how far a neighbour in the grid is: how far it may be beside its edge, 15°."""
+
+ROUGHLY = 0.35
+"""Of the shortest step in a grid of nine: how far a corner may be from where its neighbours put it."""
+
+QUICK_CHECK = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
+"""Of OpenCV's older detector: as usual, but it gives up where no squares of one size are seen, in a fiftieth of the
+time that it takes over a picture in which there is no board."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -168,14 +184,24 @@ def _corner_like(picture: NDArray[np.uint8]) -> _Saddles:
         return saddles
     smooth = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), 1.0)
     angle = np.arange(16) * (np.pi / 8)
-    ring = saddles.points[:, None, :] + RING * np.column_stack([np.cos(angle), np.sin(angle)])
-    levels = np.asarray(map_coordinates(smooth, ring.reshape(-1, 2).T[::-1], order=1, mode="nearest"))
-    levels = levels.reshape(-1, 16)
+    around = RING * np.column_stack([np.cos(angle), np.sin(angle)])
+    good: list[NDArray[np.intp]] = []
+    for first in range(0, len(saddles.points), MOST_CORNERS):  # strongest first; where all are noise there are many
+        ring = saddles.points[first : first + MOST_CORNERS, None, :] + around
+        levels = np.asarray(map_coordinates(smooth, ring.reshape(-1, 2).T[::-1], order=1, mode="nearest"))
+        good.append(first + np.flatnonzero(_alternate(levels.reshape(-1, len(around)))))
+        if sum(map(len, good)) >= MOST_CORNERS:
+            break
+    return saddles.select(np.concatenate(good)[:MOST_CORNERS])
+
+
+def _alternate(levels: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Whether the levels (N, 16) on rings about saddles rise and fall twice, the same on opposite sides."""
     waves = np.abs(np.fft.rfft(levels.astype(np.float64), axis=1)) ** 2
     waves[:, -1] /= 2  # the only one that the transform has once
     total = np.maximum(waves[:, 1:].sum(axis=1), 1e-12)
-    good = (waves[:, 2::2].sum(axis=1) > LEAST_EVEN * total) & (waves[:, 2] > LEAST_TWOFOLD * total)
-    return saddles.select(np.flatnonzero(good)[:MOST_CORNERS])
+    alike: NDArray[np.bool_] = waves[:, 2::2].sum(axis=1) > LEAST_EVEN * total
+    return alike & (waves[:, 2] > LEAST_TWOFOLD * total)
 
 
 def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array]) -> Iterator[Array]:
@@ -184,18 +210,16 @@ def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array
     A saddle's two edges run where its second derivative vanishes; its neighbours in the grid are the next saddles
     along them. Seeds within the grids of `known`, to which the caller may add between two seeds, are left out.
     """
-    points, strength = saddles.points, saddles.strength
-    if len(points) < 9:
+    points = saddles.points
+    nine = np.empty(9, dtype=np.int64)
+    if len(points) < len(nine):
         return
-    tree = cKDTree(points)
     tries = 0
     for k, point in enumerate(points):
         if any(_within(grid, point) for grid in known):
             continue
-        near = np.asarray(tree.query(point, k=min(NEIGHBOURS, len(points)))[1], dtype=np.intp)
-        around = near[strength[near] >= ALIKE * strength[k]]
-        crossed = np.cos(2 * (saddles.turn[around] - saddles.turn[k]))  # +1 alike, −1 a right angle; NaN: not known
-        seed = _seed(picture, points[around], saddles.edges[k], crossed)
+        reach = _nine_about(points, saddles.edges, saddles.strength, saddles.turn, k, nine)
+        seed = _seed(picture, points[nine], reach) if reach > 0 else None
         if seed is not None:
             yield seed
         tries += seed is None
@@ -208,45 +232,115 @@ def _within(grid: Array, point: Array) -> bool:
     return cv2.pointPolygonTest(outline, (float(point[0]), float(point[1])), False) >= 0
 
 
-def _seed(picture: NDArray[np.uint8], points: Array, edges: Array, crossed: Array) -> Array | None:
-    """The grid (3, 3, 2) about the first of `points`, if its neighbours are there and black and white alternate.
+def _seed(picture: NDArray[np.uint8], corners: Array, reach: float) -> Array | None:
+    """The `corners` (9, 2) refined as a grid (3, 3, 2), if black and white alternate there.
 
-    Neighbours along an edge are sought among those that are not `crossed` (N,) like the first one itself.
+    None if the middle one moves by more than a part of `reach`, the shortest way to another one.
     """
-    if len(points) < 9:
-        return None
-    offsets = points - points[0]
-    other = offsets[~(crossed > -0.3)]
-    steps = [_next_along(other, sign * edge) for edge in edges for sign in (-1, 1)]
-    before, after, above, below = steps
-    if before is None or after is None or above is None or below is None:
-        return None
-    rough = np.array(
-        [
-            [before + above, above, after + above],
-            [before, np.zeros(2), after],
-            [before + below, below, after + below],
-        ]
-    )
-    spread = np.linalg.norm(rough, axis=2)
-    reach = float(spread[spread > 0].min())
-    distance = np.linalg.norm((points[0] + rough).reshape(-1, 1, 2) - points, axis=2)
-    index = distance.argmin(axis=1)
-    if distance.min(axis=1).max() > 0.35 * reach or len(set(index)) < 9:
-        return None
     height, width = picture.shape
-    grid = refined(picture, points[index], int(np.clip(0.3 * reach, 2, 8))).reshape(3, 3, 2)
-    if not ((grid > 0) & (grid < [width, height])).all() or np.linalg.norm(grid[1, 1] - points[0]) > 0.3 * reach:
+    grid = refined(picture, corners, int(np.clip(0.3 * reach, 2, 8))).reshape(3, 3, 2)
+    if not ((grid > 0) & (grid < [width, height])).all() or np.linalg.norm(grid[1, 1] - corners[4]) > 0.3 * reach:
         return None
     return grid if is_checkered(picture, grid) else None
 
 
-def _next_along(offsets: Array, direction: Array) -> Array | None:
-    """The nearest of `offsets` (N, 2) within 15° of `direction` (2,)."""
-    along = offsets @ direction
-    across = np.abs(offsets @ np.array([-direction[1], direction[0]]))
-    ahead = np.flatnonzero((along > 0) & (across < 0.27 * along))
-    return offsets[ahead[np.argmin(along[ahead])]] if len(ahead) else None
+@compiled()
+def _nine_about(points: Array, edges: Array, strength: Array, turn: Array, k: int, nine: Index) -> float:
+    """Find the saddle `points` (N, 2) of a grid of 3 × 3 about the one with index `k`: `nine` indices, row by row.
+
+    Returns the shortest step from the middle to another one in px, 0 where there is no such grid. Neighbours along an
+    edge are sought among those whose light squares do not lie like those of the middle one.
+    """
+    near = _neighbours(points, k)
+    count = 0
+    for i in near:
+        if strength[i] >= ALIKE * strength[k]:
+            near[count] = i
+            count += 1
+    if count < len(nine):
+        return 0.0
+    near = near[:count]
+    along, down = new_table(3, 2), new_table(3, 2)
+    for steps, edge in ((along, edges[k, 0]), (down, edges[k, 1])):
+        steps[1, 0] = steps[1, 1] = 0.0
+        for side in (0, 2):
+            found = _next_along(points, turn, near, k, (side - 1) * edge[0], (side - 1) * edge[1])
+            if found < 0:
+                return 0.0
+            for axis in range(2):
+                steps[side, axis] = points[found, axis] - points[k, axis]
+    reach = math.inf
+    for row in range(3):
+        for one in range(3):
+            step = math.hypot(along[one, 0] + down[row, 0], along[one, 1] + down[row, 1])
+            if 0 < step < reach:
+                reach = step
+    for place in range(len(nine)):
+        u = points[k, 0] + along[place % 3, 0] + down[place // 3, 0]
+        v = points[k, 1] + along[place % 3, 1] + down[place // 3, 1]
+        found = _nearest(points, near, u, v)
+        away = math.hypot(u - points[found, 0], v - points[found, 1])
+        if away > ROUGHLY * reach:
+            return 0.0
+        for other in nine[:place]:
+            if other == found:
+                return 0.0
+        nine[place] = found
+    return reach
+
+
+@inlined()
+def _neighbours(points: Array, k: int) -> Index:
+    """The NEIGHBOURS of `points` (N, 2) that are nearest to the one with index `k`, and those as near as the last."""
+    wanted = min(NEIGHBOURS, len(points))
+    square = new_row(len(points))
+    for i in range(len(points)):
+        u, v = points[i, 0] - points[k, 0], points[i, 1] - points[k, 1]
+        square[i] = u * u + v * v
+    limit, count = float(NEIGHBOURS), 0
+    while count < wanted:  # the few within a circle are sooner put in order than all
+        limit *= 4
+        count = 0
+        for i in range(len(points)):
+            count += square[i] <= limit
+    within = new_row(count)
+    count = 0
+    for i in range(len(points)):
+        if square[i] <= limit:
+            within[count] = square[i]
+            count += 1
+    limit = smallest(within, wanted - 1)
+    near = new_indices(count)
+    count = 0
+    for i in range(len(points)):
+        if square[i] <= limit:
+            near[count] = i
+            count += 1
+    return near[:count]
+
+
+@inlined()
+def _next_along(points: Array, turn: Array, near: Index, k: int, way_u: float, way_v: float) -> int:
+    """Which of the points `near` (K,) comes next from the one with index `k` within 15° of a way; −1 if none."""
+    found, least = -1, math.inf
+    for i in near:
+        u, v = points[i, 0] - points[k, 0], points[i, 1] - points[k, 1]
+        along = u * way_u + v * way_v
+        ahead = 0 < along < least and abs(v * way_u - u * way_v) < FARTHEST_ASIDE * along
+        if ahead and not math.cos(2 * (turn[i] - turn[k])) > LIKE_ITSELF:  # NaN: not known
+            found, least = i, along
+    return found
+
+
+@inlined()
+def _nearest(points: Array, near: Index, u: float, v: float) -> int:
+    """Which of the points `near` (K,) is nearest to a place."""
+    found, least = -1, math.inf
+    for i in near:
+        square = (points[i, 0] - u) ** 2 + (points[i, 1] - v) ** 2
+        if square < least:
+            found, least = i, square
+    return found
 
 
 def _of_opencv(picture: NDArray[np.uint8], columns: int, rows: int) -> Iterator[Array]:
@@ -255,8 +349,12 @@ def _of_opencv(picture: NDArray[np.uint8], columns: int, rows: int) -> Iterator[
     Duda, A. & Frese, U., Accurate detection and localization of checkerboard corners for calibration, BMVC 2018, is the
     first of them; it leaves corners out of their place now and then, and either may take a part of a larger board.
     """
-    for find in (cv2.findChessboardCornersSB, cv2.findChessboardCorners):
-        there, corners = find(picture, (columns, rows))
+    size = columns, rows
+    for find in (
+        lambda: cv2.findChessboardCornersSB(picture, size),
+        lambda: cv2.findChessboardCorners(picture, size, flags=QUICK_CHECK),
+    ):
+        there, corners = find()
         if not there:
             continue
         grid = np.asarray(corners, dtype=np.float64).reshape(rows, columns, 2)
