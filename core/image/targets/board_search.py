@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import cv2
 import numpy as np
@@ -195,13 +197,14 @@ def _corner_like(picture: NDArray[np.uint8]) -> _Saddles:
     return saddles.select(np.concatenate(good)[:MOST_CORNERS])
 
 
-def _alternate(levels: NDArray[np.float32]) -> NDArray[np.bool_]:
+def _alternate(levels: NDArray[Any]) -> NDArray[np.bool_]:
     """Whether the levels (N, 16) on rings about saddles rise and fall twice, the same on opposite sides."""
     waves = np.abs(np.fft.rfft(levels.astype(np.float64), axis=1)) ** 2
     waves[:, -1] /= 2  # the only one that the transform has once
     total = np.maximum(waves[:, 1:].sum(axis=1), 1e-12)
-    alike: NDArray[np.bool_] = waves[:, 2::2].sum(axis=1) > LEAST_EVEN * total
-    return alike & (waves[:, 2] > LEAST_TWOFOLD * total)
+    alternate: NDArray[np.bool_] = waves[:, 2::2].sum(axis=1) > LEAST_EVEN * total
+    alternate &= waves[:, 2] > LEAST_TWOFOLD * total
+    return alternate
 
 
 def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array]) -> Iterator[Array]:
@@ -349,12 +352,8 @@ def _of_opencv(picture: NDArray[np.uint8], columns: int, rows: int) -> Iterator[
     Duda, A. & Frese, U., Accurate detection and localization of checkerboard corners for calibration, BMVC 2018, is the
     first of them; it leaves corners out of their place now and then, and either may take a part of a larger board.
     """
-    size = columns, rows
-    for find in (
-        lambda: cv2.findChessboardCornersSB(picture, size),
-        lambda: cv2.findChessboardCorners(picture, size, flags=QUICK_CHECK),
-    ):
-        there, corners = find()
+    for detector in (cv2.findChessboardCornersSB, partial(cv2.findChessboardCorners, flags=QUICK_CHECK)):
+        there, corners = detector(picture, (columns, rows))
         if not there:
             continue
         grid = np.asarray(corners, dtype=np.float64).reshape(rows, columns, 2)
