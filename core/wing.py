@@ -8,11 +8,11 @@ leaves wings out by their names.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeGuard, TypeVar
 
 from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, found_at, left_out, names_of_entry_points
 from core.messages import Message
@@ -28,12 +28,14 @@ NO_READER_OF_STUDIES = Message(
 )
 """What is wrong where no wing reads them, as an InputError tells it with `how_to_get`."""
 
+Row = TypeVar("Row")
+
 _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
 
 @dataclass(frozen=True, slots=True)
 class ReportSection:
-    """Section of the report: a heading and facts. It stands behind the checks by artefacts.
+    """Section of the report: a heading and facts.
 
     Parameters
     ----------
@@ -42,10 +44,14 @@ class ReportSection:
     facts
         "module:name" of a function of the folder of results (a path) and the `core.report.content.ReportContent` so
         far, that gives the `core.report.facts.fact.Fact` of the section. Without facts the section is not printed.
+    below_results
+        "": it stands behind the checks by artefacts. Else its facts stand below the results on the first page, and by
+        this name among those that tables of results hand over.
     """
 
     title: str
     facts: str
+    below_results: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +71,9 @@ class Wing:
     findings
         "module:name" of the rows it adds to the table of findings, each a `core.findings.finding.Finding`, in a module
         that is light to import; "": none.
+    exports
+        "module:name" of the kinds of files it can export, each a `core.files.results.export_list.BroughtExport`, in a
+        module that is light to import; "": none.
     reads_study
         "module:name" of a function of the path of a study.json that gives the `core.report.content.ReportedStudy`, or
         raises InputError; "": it reads none.
@@ -75,6 +84,7 @@ class Wing:
     after: str = ""
     sections: tuple[ReportSection, ...] = ()
     findings: str = ""
+    exports: str = ""
     reads_study: str = ""
 
 
@@ -129,6 +139,47 @@ def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
         else:
             unusable.append(one if one.why else replace(one, why=_NO_WING))
     return Found(tuple(found.values()), tuple(unusable), tuple(away))
+
+
+def rows_of_wings(
+    place: Callable[[Wing], str],
+    is_row: Callable[[object], TypeGuard[Row]],
+    name_of: Callable[[Row], str],
+    taken: Container[str],
+    why: Callable[[str], Message],
+) -> tuple[Mapping[str, tuple[Row, Origin | None]], tuple[Brought, ...]]:
+    """Collect the rows that wings add to a table of the house, by their names, and those that cannot be used.
+
+    With each row is the package it comes from; None: the program itself.
+
+    Parameters
+    ----------
+    place
+        Where a wing has its rows, "module:name"; "": it has none.
+    is_row
+        Whether an object is a row of the table.
+    name_of
+        The name of a row; of one name the first row counts.
+    taken
+        The names of the house's own rows.
+    why
+        What is wrong with a row whose name is taken, or, with the name "", with what is no row.
+    """
+    found, unusable = dict[str, tuple[Row, Origin | None]](), list[Brought]()
+    for wing, origin in wings().wings:
+        try:
+            rows = tuple(found_at(place(wing))) if place(wing) else ()
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's module raises: the house has its own rows)
+            unusable.append(Brought(wing.name, None, f"{type(error).__name__}: {error}", origin))
+            continue
+        for row in rows:
+            if not is_row(row):
+                unusable.append(Brought(wing.name, row, why(""), origin))
+            elif name_of(row) in taken or name_of(row) in found:
+                unusable.append(Brought(wing.name, row, why(name_of(row)), origin))
+            else:
+                found[name_of(row)] = row, origin
+    return found, tuple(unusable)
 
 
 def how_to_get(name: str) -> Message:

@@ -49,6 +49,7 @@ proof reads has no module.
 """
 ASKED_FOR_BY = {
     "core.cli.app": ("commands",),
+    "core.files.results.export_list": ("exports",),
     "core.findings.table": ("findings",),
     "core.pipeline.steps.brought_sections": ("sections", "reads_study"),
 }

@@ -61,7 +61,7 @@ def test_wear_is_told_written_and_reported(results, before):
     assert np.array_equal(significant, beyond)
     assert np.array_equal(points["significant"].astype(bool), significant)
     content = results_content(results)
-    told = {str(fact.label): fact for fact in content.compared}
+    told = {str(fact.label): fact for fact in content.below_results["comparison"].facts}
     assert told["compared with"].value == plain("before.ply")
     assert told["detectable from"].value == read_comparison(results / "comparison.json").lod95_mm
     assert read_comparison(results / "comparison.json").alignment == "as measured"

@@ -16,6 +16,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMainWindow, QWidget
 
 from core.door import Brought, Origin, by_entry_points, by_folders, found_at
+from core.files.results.export_list import unusable_exports
 from core.findings.brought import OURS as PROGRAM
 from core.findings.brought import failure, note_on_unusable
 from core.findings.table import unusable_findings
@@ -119,7 +120,7 @@ def window_wings() -> Found[WindowWing]:
 
 def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, Callable[[], object]]:
     """What each entry of the wings does; a notice tells of those that cannot be made."""
-    for one in (*window_wings().unusable, *unusable_findings()):
+    for one in (*window_wings().unusable, *unusable_findings(), *unusable_exports()):
         bench.notices.warning(text_of(note_on_unusable(one)))
     if note := note_on_no_wings():
         bench.notices.warning(text_of(note))

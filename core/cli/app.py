@@ -126,10 +126,11 @@ def _commands(_spoken: str) -> Any:
 
 def whole_command() -> tuple[Any, list[Brought]]:
     """Make the group of all commands, those of the wings among them, and list the wings that cannot be used."""
+    from core.files.results.export_list import unusable_exports
     from core.findings.table import unusable_findings
 
     command: Any = get_command(app)
-    unusable = [*wings().unusable, *unusable_findings()]
+    unusable = [*wings().unusable, *unusable_findings(), *unusable_exports()]
     for wing, origin in wings().wings:
         try:
             command.commands = with_commands(command.commands, wing)

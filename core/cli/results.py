@@ -21,7 +21,7 @@ from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
 from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 from core.files.results.folder_results import read_results
 from core.files.results.inspection_file import inspection_values
 from core.inspect.comparison import ComparisonScales
@@ -208,10 +208,10 @@ def run_export(
         raise InputError(
             Message("export.no_format_given", "no format is given"),
             where="--format",
-            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(exports())),
         )
     files = export_results(out, kinds, to, chosen.said, progress, in_camera_frame=in_camera_frame)
-    return Shown([(text_of(EXPORTS[name].title), path.name) for name, path in files.items()], {}, (), files)
+    return Shown([(text_of(exports()[name].title), path.name) for name, path in files.items()], {}, (), files)
 
 
 def run_import(file: Path, out: Path) -> Shown:

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, TypeGuard
 
-from core.door import Brought, found_at
+from core.door import Brought
 from core.findings import of_artefacts, of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan
 from core.findings.finding import Finding, Weight
 from core.messages import Message
-from core.wing import wings
+from core.wing import rows_of_wings
 
 _SUBJECTS = (of_camera, of_planes, of_rig, of_pictures, of_scan, of_part, of_artefacts, of_proof)
 FINDINGS: Mapping[str, Finding] = {row.code: row for subject in _SUBJECTS for row in subject.ROWS}
@@ -23,28 +23,21 @@ FINDINGS: Mapping[str, Finding] = {row.code: row for subject in _SUBJECTS for ro
 assert len(FINDINGS) == sum(len(subject.ROWS) for subject in _SUBJECTS)
 
 
-_NO_FINDING = Message("plugin.why_no_finding", "one of its findings is no Finding")
+def _why_unusable(code: str) -> Message:
+    if not code:
+        return Message("plugin.why_no_finding", "one of its findings is no Finding")
+    return Message("plugin.why_code_taken", "the code of its finding {code} is taken", code=code)
+
+
+def _is_finding(row: object) -> TypeGuard[Finding]:
+    return isinstance(row, Finding)
 
 
 @cache
 def _of_wings() -> tuple[Mapping[str, Finding], tuple[Brought, ...]]:
-    """The rows that wings add, by their codes, and those that cannot be used: the first row of a code counts."""
-    found, unusable = dict[str, Finding](), list[Brought]()
-    for wing, origin in wings().wings:
-        try:
-            rows = tuple(found_at(wing.findings)) if wing.findings else ()
-        except Exception as error:  # noqa: BLE001  (whatever a stranger's module raises: the house tells its own)
-            unusable.append(Brought(wing.name, None, f"{type(error).__name__}: {error}", origin))
-            continue
-        for row in rows:
-            if not isinstance(row, Finding):
-                unusable.append(Brought(wing.name, row, _NO_FINDING, origin))
-            elif row.code in FINDINGS or row.code in found:
-                why = Message("plugin.why_code_taken", "the code of its finding {code} is taken", code=row.code)
-                unusable.append(Brought(wing.name, row, why, origin))
-            else:
-                found[row.code] = row
-    return found, tuple(unusable)
+    """The rows that wings add, by their codes, and those that cannot be used."""
+    found, bad = rows_of_wings(lambda wing: wing.findings, _is_finding, lambda row: row.code, FINDINGS, _why_unusable)
+    return {code: row for code, (row, _) in found.items()}, bad
 
 
 def unusable_findings() -> tuple[Brought, ...]:

@@ -253,8 +253,8 @@ class ReportContent:
         By a feature's name, its profile: (M, 2) position along it and height, in mm.
     deviations
         Comparisons with nominal surfaces.
-    compared
-        What a comparison with another scan or surface came to; nothing where none was made.
+    below_results
+        Of the wings, what stands below the results, each by the name under which tables of results have it.
     studies
         Studies of the way of measuring, and of series of parts.
     check
@@ -330,7 +330,7 @@ class ReportContent:
     seen_at: Mapping[str, str] = field(default_factory=dict)
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
-    compared: tuple[Fact, ...] = ()
+    below_results: Mapping[str, BroughtSection] = field(default_factory=dict)
     studies: tuple[ReportedStudy, ...] = ()
     check: Check | None = None
     artefacts: tuple[ArtefactCheck, ...] = ()
@@ -442,7 +442,7 @@ class ReportContent:
             "template": self.template.words,
             "studies": [(one.facts, one.tables, one.notes) for one in self.studies],
             "artefacts": self.artefacts,
-            "compared": self.compared,
+            "compared": tuple(chain.from_iterable(one.facts for one in self.below_results.values())),
             "brought": self.brought,
             "view": "" if self.view_shown is None else self.view_shown.words,
             "certificates": sorted(self.certificates.items()),
@@ -491,15 +491,15 @@ class ReportContent:
     def facts(self) -> Mapping[str, tuple[Fact, ...]]:
         """Facts (name, value, unit) on each part of the work, by its name: "camera", "planes", "scan", …."""
         artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
-        return {
+        house = {
             "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
             "planes": planes_facts(self.fan),
             "check": () if self.check is None else check_facts(self.check),
             "artefact": tuple(chain(*artefacts)),
             "scan": self.scan_facts,
             "thickness": () if self.gauge is None else gauge_facts(self.gauge),
-            "comparison": self.compared,
         }
+        return house | {name: one.facts for name, one in self.below_results.items() if name not in house}
 
     @property
     def scan_facts(self) -> tuple[Fact, ...]:

@@ -148,7 +148,7 @@ def _names(content: ReportContent) -> Iterator[str]:
     yield from (one.name for one in content.deviations)
     yield from (frame.name for frame in content.frames)
     yield from (*content.hashes, *content.points)
-    for brought in content.brought:
+    for brought in (*content.brought, *content.below_results.values()):
         yield from (brought.title, *(str(text) for one in brought.facts for text in (one.label, one.value)))
     for study in content.studies:
         cells = (str(cell) for table in study.tables for row in table.rows for cell in row)

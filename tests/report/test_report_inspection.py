@@ -22,7 +22,7 @@ from core.inspect.results import Contribution
 from core.messages import label, plain
 from core.progress import silent
 from core.report import pdf
-from core.report.content import MOST_CALLOUTS, ReportedStudy
+from core.report.content import MOST_CALLOUTS, BroughtSection, ReportedStudy
 from core.report.drawings import drawings
 from core.report.facts.of_comparison import comparison_facts
 from core.report.layout.style import BOLD, SANS, ReportLook, words_width
@@ -107,7 +107,8 @@ def test_a_comparison_is_told_in_figures(quick):
         "before.ply", "best fit", 1300, changed, same, lod95_mm=0.06, diameter_mm=12.0, reach_mm=5.0,
         registration_mm=0.002, calibration_id="",
     )  # fmt: skip
-    text = words(build_report(replace(quick, compared=comparison_facts(found)))).replace("\u00a0", " ")
+    section = BroughtSection("Comparison", comparison_facts(found))
+    text = words(build_report(replace(quick, below_results={"comparison": section}))).replace("\u00a0", " ")
     assert "Compared with Aligned Less material More material before.ply best fit" in text
     assert "25.0 % of the places, mean −0.100 mm, at most −0.120 mm" in text and "nowhere significant" in text
     assert "0.060 mm 0.0020 mm 1 300 12 mm" in text

@@ -1,15 +1,21 @@
 """What a wing adds is there; one that is left out, or cannot be used, takes nothing else with it."""
 
+import io
 import sys
 
 import pytest
+from pypdf import PdfReader
 
 from core.door import WITHOUT, by_folders
+from core.files.results.export_list import exports
+from core.files.results.ply import read_cloud
 from core.findings.table import FINDINGS as HOUSE
 from core.findings.table import all_findings, is_grave, note_of
+from core.pipeline.steps.report_step import draw_report, results_content
 from core.wing import OUR_COMMANDS, wings
 from tests.simulated import trisect
 from tests.wings.strangers import install, look_again
+from workbench.pages.report.words import export_words
 from workbench.wing import window_wings
 
 __all__ = ["install"]
@@ -112,6 +118,76 @@ def test_findings_that_cannot_be_used_are_told_and_those_of_the_house_stay(insta
     assert all_findings().items() >= HOUSE.items()
     if rows != "NOWHERE":
         assert is_grave(note_of("lab.bent"))
+
+
+EXPORTS = """
+from pathlib import Path
+from core.errors import InputError
+from core.files.results.export_list import BroughtExport, ExportKind
+from core.report.facts.fact import Fact
+from core.wing import ReportSection, Wing
+
+def write(results, path, progress):
+    path.write_text(f"{len(results.content.cloud)} points")
+
+def fails(results, path, progress):
+    raise ZeroDivisionError("by zero")
+
+def told(out, content):
+    return [Fact("points counted", len(content.cloud))]
+
+COUNT = BroughtExport(ExportKind("count", "Count", "count.txt", "scan"), "lab_count:write", "cloud", "How many")
+LAST = BroughtExport(ExportKind("last", "Last", "last.txt", "scan"), "lab_count:fails")
+ROWS = (COUNT, LAST)
+NONE = (COUNT, 7)
+TWICE = (COUNT, COUNT)
+TAKEN = (BroughtExport(ExportKind("pdf", "Ours", "our.pdf", "scan"), "lab_count:write"), COUNT)
+WING = Wing("count", sections=(ReportSection("Counted", "lab_count:told", "count"),), exports="lab_count:{rows}")
+"""
+
+
+def counting(install, rows="ROWS"):
+    install("lab-count", {"lab_count": EXPORTS.format(rows=rows)}, {"trisect.wings": {"count": "lab_count:WING"}})
+
+
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        ("ROWS", ""),
+        ("NONE", "one of its kinds of export is no BroughtExport"),
+        ("TWICE", "the name of its kind of export count is taken"),
+        ("TAKEN", "the name of its kind of export pdf is taken"),
+        ("NOWHERE", "AttributeError: module 'lab_count' has no attribute 'NOWHERE'"),
+    ],
+)
+def test_exports_that_cannot_be_used_are_told_and_those_of_the_house_stay(install, rows, why):
+    before = list(exports())
+    counting(install, rows)
+    told = f"count of the package lab-count 1.2 cannot be used: {why}." if why else ""
+    assert trisect("--help").err.strip() == told
+    assert [name for name in exports() if name in before] == before
+    if rows != "NOWHERE":
+        assert list(exports())[before.index("cloud") + 1] == "count"
+        assert export_words("count") == ("Count", "How many", "mdi6.file-export-outline")
+
+
+def test_an_export_of_a_wing_is_written_and_one_that_fails_costs_no_other(install, measured, tmp_path):
+    counting(install)
+    said = trisect("export", measured, "--format", "last,count,cloud", "--to", tmp_path)
+    assert said.code == 2 and "last of the package lab-count 1.2 failed: ZeroDivisionError: by zero" in said.err
+    points = len(read_cloud(measured / "cloud.ply").cloud)
+    assert (tmp_path / "count.txt").read_text() == f"{points} points" and (tmp_path / "cloud.ply").exists()
+
+
+def test_facts_of_a_wing_stand_below_the_results_and_in_the_tables(install, measured, tmp_path):
+    counting(install)
+    content = results_content(measured)
+    points = len(content.cloud)
+    assert [fact.value for fact in content.facts["count"]] == [points]
+    page = PdfReader(io.BytesIO(draw_report(content))).pages[0].extract_text().replace("\N{NO-BREAK SPACE}", " ")
+    assert "Counted" in page and "From the package lab-count 1.2, which is no part of Trisect." in page
+    trisect("export", measured, "--format", "table", "--to", tmp_path)
+    assert f"count,points counted,{points}" in (tmp_path / "result.csv").read_text()
 
 
 def test_a_wing_is_left_out_by_its_name(install, monkeypatch):

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QApplication, QMenu
 
 from core.files.project.data import new_project
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 from workbench.main_window import MainWindow
 from workbench.views import ask
 
@@ -50,7 +50,7 @@ def test_results_are_exported_from_the_file_menu(
     assert isinstance(menu, QMenu) and entry.isEnabled()
     menu.aboutToShow.emit()
     kinds = {str(one.data()): one for one in menu.actions() if one.data() is not None}
-    assert list(kinds) == list(EXPORTS)
+    assert list(kinds) == list(exports())
     assert not kinds["stl"].isEnabled() and kinds["stl"].toolTip() == "Scan the part first."
     window.model.open(measured_project)
     menu.aboutToShow.emit()

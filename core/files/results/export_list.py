@@ -1,18 +1,21 @@
 """Everything that can be handed over, by name: what it is called, how its file is called and what it is made from.
 
 Apart from what writes it (`core.pipeline.steps.export_kinds`), because a window lists it without needing those
-libraries.
+libraries. Wings add kinds of their own, which `exports` puts among them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import PurePath
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, TypeGuard
 
-from core.messages import label
+from core.door import Brought, Origin
+from core.messages import Message, label
+from core.wing import rows_of_wings
 
 Needs = Literal["camera", "scan", "gauge"]
 """The step whose result something is written from."""
@@ -46,6 +49,29 @@ class ExportKind:
         return PurePath(self.file).suffix
 
 
+@dataclass(frozen=True, slots=True)
+class BroughtExport:
+    """Kind of file that a wing can export.
+
+    Parameters
+    ----------
+    kind
+        What it is.
+    writes
+        "module:name" of a function of the `core.pipeline.steps.export_kinds.Results`, the path and the progress.
+    after
+        The kind behind which it is offered; "": at the end.
+    tip, icon
+        What the window says of it, in English, and the name of its icon.
+    """
+
+    kind: ExportKind
+    writes: str
+    after: str = ""
+    tip: str = ""
+    icon: str = "mdi6.file-export-outline"
+
+
 _ALL = (
     ExportKind("pdf", label("Report (PDF)"), "report.pdf", "scan"),
     ExportKind("cloud", label("Point cloud (PLY)"), "cloud.ply", "scan"),
@@ -71,4 +97,38 @@ _ALL = (
 )
 
 EXPORTS: Mapping[str, ExportKind] = MappingProxyType({kind.name: kind for kind in _ALL})
-"""All kinds by name, in the order in which they are offered."""
+"""The kinds of the house by name, in the order in which they are offered."""
+
+
+def exports() -> Mapping[str, ExportKind]:
+    """All kinds by name, those of the wings among them, in the order in which they are offered."""
+    kinds = list(EXPORTS.values())
+    for brought, _ in brought_exports().values():
+        names = [kind.name for kind in kinds]
+        kinds.insert(names.index(brought.after) + 1 if brought.after in names else len(names), brought.kind)
+    return {kind.name: kind for kind in kinds}
+
+
+def brought_exports() -> Mapping[str, tuple[BroughtExport, Origin | None]]:
+    """The kinds of the wings, by name, each with the package it comes from; None: the program itself."""
+    return _of_wings()[0]
+
+
+def unusable_exports() -> tuple[Brought, ...]:
+    """What wings name as kinds of export and cannot be used."""
+    return _of_wings()[1]
+
+
+@cache
+def _of_wings() -> tuple[Mapping[str, tuple[BroughtExport, Origin | None]], tuple[Brought, ...]]:
+    return rows_of_wings(lambda wing: wing.exports, _is_export, lambda row: row.kind.name, EXPORTS, _why_unusable)
+
+
+def _is_export(row: object) -> TypeGuard[BroughtExport]:
+    return isinstance(row, BroughtExport)
+
+
+def _why_unusable(name: str) -> Message:
+    if not name:
+        return Message("plugin.why_no_export", "one of its kinds of export is no BroughtExport")
+    return Message("plugin.why_export_taken", "the name of its kind of export {name} is taken", name=name)

@@ -23,6 +23,7 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
     A note tells of a section that fails.
     """
     sections, failed = list[BroughtSection](), list[Message]()
+    below = dict(content.below_results)
     for wing, origin in wings().wings:
         for one in wing.sections:
             try:
@@ -31,10 +32,15 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
             except Exception as error:  # noqa: BLE001  (whatever a stranger's wing raises: the report is made)
                 failed.append(failure(origin or OURS, one.title, error))
                 continue
-            sections += [BroughtSection(one.title, facts, origin)] if facts else []
-    if not sections and not failed:
+            section = BroughtSection(one.title, facts, origin)
+            if facts and one.below_results:
+                below.setdefault(one.below_results, section)
+            elif facts:
+                sections.append(section)
+    if not (sections or below or failed):
         return content
-    return replace(content, brought=tuple(sections), notes=(*content.notes, *failed))
+    notes = (*content.notes, *failed)
+    return replace(content, brought=tuple(sections), below_results=below, notes=notes)
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:

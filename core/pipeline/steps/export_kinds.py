@@ -8,7 +8,8 @@ from functools import cached_property
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration
-from core.errors import InputError
+from core.door import found_at
+from core.errors import Cancelled, InputError
 from core.extras import install
 from core.files.atomic import write_bytes
 from core.files.exchange.dcc import write_dcc
@@ -23,13 +24,14 @@ from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
 from core.files.results.comparison_file import write_comparison_csv_in, write_comparison_ply_in
-from core.files.results.export_list import EXPORTS, ExportKind
+from core.files.results.export_list import ExportKind, brought_exports, exports
 from core.files.results.gauge_file import read_lower_face
 from core.files.results.geometry_file import read_geometry, read_part_frame
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
 from core.files.results.ply import read_cloud, read_mesh, read_mesh_file, write_cloud, write_mesh
 from core.files.results.run_file import read_run
 from core.files.step_graph import FILES
+from core.findings.brought import OURS, failure
 from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, part_frame
 from core.messages import Message
 from core.progress import Progress, silent
@@ -221,20 +223,33 @@ WRITERS: Mapping[str, Write] = {
     "opencv-json": _opencv,
     "ros": _ros,
 }
-"""What writes each kind of `core.files.results.export_list.EXPORTS`, by its name."""
+"""What writes each kind of `core.files.results.export_list.EXPORTS`, by its name; of a wing's own its row says it."""
 
 
 def export_kind(name: str) -> ExportKind:
     """Find the kind of export that is called `name`; InputError that names all kinds if there is none."""
-    if name not in EXPORTS:
+    if name not in exports():
         raise InputError(
             Message("export.no_such_format", 'there is no format "{name}"', name=name),
             where="--format",
-            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(exports())),
         )
-    return EXPORTS[name]
+    return exports()[name]
 
 
 def write_export(kind: str, results: Results, path: Path, progress: Progress = silent) -> None:
-    """Write the results as the export called `kind` to `path`; InputError if there is none, or a result is missing."""
-    WRITERS[export_kind(kind).name](results, path, progress)
+    """Write the results as the export called `kind` to `path`; InputError if there is none, or a result is missing.
+
+    InputError as well where the wing that brings the kind fails.
+    """
+    name = export_kind(kind).name
+    if name in WRITERS:
+        WRITERS[name](results, path, progress)
+        return
+    brought, origin = brought_exports()[name]
+    try:
+        found_at(brought.writes)(results, path, progress)
+    except (InputError, Cancelled):
+        raise
+    except Exception as error:
+        raise InputError(failure(origin or OURS, name, error), where=path) from error

@@ -47,8 +47,7 @@ from core.pipeline.steps.brought_sections import with_brought_sections
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
-from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
-from core.report.facts.fact import Fact
+from core.report.content import BroughtSection, CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.facts.of_comparison import comparison_facts
 from core.report.wording import Words, target_in_words
 from core.scan.method import Method
@@ -193,7 +192,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         simulated=record.simulated,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
-    content = replace(with_inspection(content, out), compared=_compared(out), check=_check(out, calibration))
+    content = replace(with_inspection(content, out), below_results=_compared(out), check=_check(out, calibration))
     return with_brought_sections(content, out)
 
 
@@ -204,10 +203,12 @@ def _check(out: Path, calibration: Calibration) -> InterimCheck | None:
     return check if check is not None and check.calibration_id == calibration.id else None
 
 
-def _compared(out: Path) -> tuple[Fact, ...]:
+def _compared(out: Path) -> Mapping[str, BroughtSection]:
     """What the comparison among the results came to; nothing where there is none."""
     path = out / FILES["comparison"]
-    return comparison_facts(read_comparison(path)) if path.exists() else ()
+    if not path.exists():
+        return {}
+    return {"comparison": BroughtSection("Comparison", comparison_facts(read_comparison(path)))}
 
 
 def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:

@@ -13,7 +13,7 @@ from core.checks.artefact_check import KINDS
 from core.findings.table import is_grave
 from core.messages import label, plural_message
 from core.model.certificate import Certificate
-from core.report.content import ReportContent
+from core.report.content import BroughtSection, ReportContent
 from core.report.facts.of_camera import camera_facts
 from core.report.facts.of_checks import artefact_facts, check_facts
 from core.report.facts.of_planes import planes_sentences, rest_of_planes
@@ -42,13 +42,25 @@ def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """Make the report sections that wings bring; one from another package names that package."""
     parts: list[Flowable] = []
     for number, one in enumerate(content.brought):
-        body: list[Flowable] = [figures(look, one.facts, columns=4)]
-        if one.origin is not None:
-            package = {"package": one.origin.package, "version": one.origin.version}
-            said = look.words("From the package {package} {version}, which is no part of Trisect.", **package)
-            body += [look.text(said, "caption")]
-        parts += [section(look, f"brought-{number}", one.title, body)]
+        parts += [section(look, f"brought-{number}", one.title, _brought(look, one))]
     return parts
+
+
+def below_results(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """Make what wings put below the results on the first page; what is from another package names that package."""
+    parts: list[Flowable] = []
+    for one in content.below_results.values():
+        parts += [Spacer(0, 3 * mm), look.fixed_text(one.title, "label"), *_brought(look, one)]
+    return parts
+
+
+def _brought(look: ReportLook, one: BroughtSection) -> list[Flowable]:
+    body: list[Flowable] = [figures(look, one.facts, columns=4)]
+    if one.origin is not None:
+        package = {"package": one.origin.package, "version": one.origin.version}
+        said = look.words("From the package {package} {version}, which is no part of Trisect.", **package)
+        body += [look.text(said, "caption")]
+    return body
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:

@@ -20,7 +20,6 @@ from core.report.layout.blocks import (
     OnOnePage,
     Picture,
     Sections,
-    figures,
     heads,
     more_line,
     plain_table,
@@ -90,7 +89,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         Bookmark("result", look.words("Result")),
         result_box(look, content, TEXT_WIDTH),
         *_results(look, content, limits),
-        *_compared(look, content),
+        *evidence.below_results(look, content),
         *_not_covered(look, content),
         *filling_pages(figures),
         *shown(tables),
@@ -106,13 +105,6 @@ def _results(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
         return []
     budgets = () if "budget" in content.hidden else _with_budget(content)[: limits.budgets]
     return [Spacer(0, 3 * mm), result_table(look, content, budgets)]
-
-
-def _compared(look: ReportLook, content: ReportContent) -> list[Flowable]:
-    """What a comparison with another surface came to."""
-    if not content.compared:
-        return []
-    return [Spacer(0, 3 * mm), look.fixed_text("Comparison", "label"), figures(look, content.compared, columns=4)]
 
 
 def _with_budget(content: ReportContent) -> tuple[int, ...]:

@@ -6,7 +6,7 @@ from PySide6.QtCore import QUrl
 from PySide6.QtGui import QAction, QDesktopServices
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 from core.messages import capital
 from core.report.template import PAPERS
 from core.states import STEP_STATES
@@ -176,7 +176,7 @@ class ReportPage(StepPage):
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
         place = 0
-        for kind in EXPORTS:
+        for kind in exports():
             title, _, symbol = export_words(kind)
             if kind in USUAL_EXPORTS:
                 button = QPushButton(icon(symbol), title)
@@ -201,7 +201,7 @@ class ReportPage(StepPage):
         """Make the menu of all exports; its entries are disabled as the page's buttons are."""
         menu = QMenu(tr("&Export"), self)
         menu.setToolTipsVisible(True)
-        for kind in EXPORTS:
+        for kind in exports():
             title, _, symbol = export_words(kind)
             action = menu.addAction(icon(symbol), title)
             action.setData(kind)
@@ -239,7 +239,7 @@ class ReportPage(StepPage):
         return export_words(kind)[1]
 
     def _export(self, kind: str) -> None:
-        ending = EXPORTS[kind].ending
+        ending = exports()[kind].ending
         kinds = f"{ending.removeprefix('.').upper()} (*{ending})"
         path = ask.choose_file_to_save(self, tr("Write a copy"), self.presenter.export_place(kind), kinds)
         if path is not None:

@@ -10,7 +10,7 @@ from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import finished, up_to_date
 from core.files.project.view_file import read_view
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 from core.messages import capital
 from core.report.template import SECTIONS
 from core.wing import NO_READER_OF_STUDIES, STUDIES, how_to_get, studies_can_be_read
@@ -185,8 +185,8 @@ class ReportPresenter(StepPresenter):
         self._make("")
 
     def export(self, kind: str, path: Path) -> None:
-        """Write an export of a kind in EXPORTS to `path`, after making the report if it is out of date."""
-        ending = EXPORTS[kind].ending
+        """Write an export of this kind to `path`, after making the report if it is out of date."""
+        ending = exports()[kind].ending
         path = path if path.suffix.lower() == ending else path.with_name(path.name + ending)
         self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
         if kind == "pdf" and self.stage is not Stage.MADE and not self.read_only:
@@ -217,16 +217,10 @@ class ReportPresenter(StepPresenter):
         """Propose the path of an export: in the folder used last, named after the part."""
         name = self.project.info.part or self.project.info.name or tr("result")
         name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or tr("result")
-        words = {
-            "surface": tr("surface"),
-            "thickness": tr("thickness"),
-            "results": tr("results"),
-            "camera": tr("camera"),
-        }
-        called = EXPORTS[kind].called
-        name += f" {words[called]}" if called else ""
+        called = exports()[kind].called
+        name += f" {tr(called)}" if called else ""
         folder = Path(self.bench.settings.text(EXPORT_FOLDER, str(self.model.folder or Path.home())))
-        return (folder if folder.is_dir() else Path.home()) / (name + EXPORTS[kind].ending)
+        return (folder if folder.is_dir() else Path.home()) / (name + exports()[kind].ending)
 
     def results_folder(self) -> Path | None:
         """Return the folder of the project's results; None if there are no results."""

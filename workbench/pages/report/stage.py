@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 
 
 class Stage(StrEnum):
@@ -66,7 +66,7 @@ def why_not_make(facts: Facts) -> WhyNot:
 
 def why_not_export(facts: Facts, kind: str) -> WhyNot:
     """Return the reason why an export of this kind is not possible; `WhyNot` "" if it is."""
-    needs = EXPORTS[kind].needs
+    needs = exports()[kind].needs
     if needs == "camera":
         return WhyNot.NOTHING if facts.camera else WhyNot.NO_CAMERA
     if not facts.scan:

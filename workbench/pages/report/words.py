@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.files.results.export_list import brought_exports
 from core.messages import label
 from workbench.language import tr
 
@@ -14,6 +15,9 @@ SHORT_TITLES = {"view": label("3D view"), "maps": label("Residuals of both faces
 
 def export_words(kind: str) -> tuple[str, str, str]:
     """Return the title, the help text and the icon's name of a kind of export."""
+    if kind in brought_exports():
+        brought, _ = brought_exports()[kind]
+        return tr(brought.kind.title), tr(brought.tip) if brought.tip else "", brought.icon
     return {
         "pdf": (tr("Report (PDF)"), tr("The report, for people"), "mdi6.file-pdf-box"),
         "cloud": (

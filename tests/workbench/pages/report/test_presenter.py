@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.files.project.data import KeptStudy, Project, Repeat, new_project
 from core.files.project.keys import finished
 from core.files.project.view_file import read_view, write_view
-from core.files.results.export_list import EXPORTS
+from core.files.results.export_list import exports
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.shown.seen_from import SeenFrom
@@ -416,9 +416,14 @@ def test_a_read_only_projects_report_is_exported_elsewhere_but_not_kept_with_it(
     assert drawing.made == []
 
 
+def test_every_export_has_a_place_to_be_written_to(report: ReportPresenter) -> None:
+    places = {kind: report.export_place(kind).name for kind in exports()}
+    assert len(set(places.values())) == len(places)
+
+
 def test_without_a_thickness_only_its_file_is_missing(report: ReportPresenter) -> None:
     measured(report, "camera", "planes", "scan")
-    missing = {kind: report.export_missing(kind) for kind in EXPORTS}
+    missing = {kind: report.export_missing(kind) for kind in exports()}
     assert {kind for kind, why in missing.items() if why} == {
         "table",
         "xlsx",
