@@ -47,13 +47,19 @@ def test_a_step_runs_with_its_own_tables_only(tiny_set, calibrated, tmp_path, st
         assert (out / f"{step}.json").read_bytes() == (calibrated / f"{step}.json").read_bytes()
 
 
+NO_FAN = "it has no table [laser_fan], which states that the rig has no fan"
+
+
 @pytest.mark.parametrize(
     ("step", "tables", "missing"),
     [
-        ("camera", ["plane_target", "laser_fan"], "camera_target"),
-        ("planes", ["camera_target", "laser_fan"], "plane_target"),
-        ("planes", ["camera_target", "plane_target"], "laser_fan"),
-        ("run", ["camera_target"], "plane_target"),
+        ("camera", ["plane_target", "laser_fan"], "camera_target is missing"),
+        ("planes", ["camera_target", "laser_fan"], "plane_target is missing"),
+        ("planes", ["camera_target", "plane_target"], NO_FAN),
+        ("check", ["camera_target", "plane_target"], NO_FAN),
+        ("profile", ["camera_target", "plane_target"], NO_FAN),
+        ("run", ["camera_target", "plane_target"], NO_FAN),
+        ("run", ["camera_target", "laser_fan"], "plane_target is missing"),
     ],
 )
 def test_a_table_that_a_step_wants_is_missed_by_name(tiny_set, calibrated, tmp_path, step, tables, missing):
@@ -62,7 +68,7 @@ def test_a_table_that_a_step_wants_is_missed_by_name(tiny_set, calibrated, tmp_p
     shutil.copy(calibrated / "camera.json", out / "camera.json")
     said = trisect(step, found, "--out", out)
     assert said.code == 2
-    assert f"{missing} is missing" in said.sentence
+    assert missing in said.sentence
 
 
 def test_a_report_names_no_target_that_rig_toml_does_not(simulated, measured, tmp_path):

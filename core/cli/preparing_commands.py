@@ -88,6 +88,9 @@ def import_(
         str,
         typer.Option("--check-off", metavar="WHERE", help="The same poses, the fan off; else NAME_off beside NAME."),
     ] = "",
+    known_planes: Annotated[
+        str, typer.Option("--known-planes", metavar="WHERE", help="Boards lying beside the part during the scan.")
+    ] = "",
     order: Annotated[
         OrderBy, typer.Option(help="name: numbers in names count as numbers. time: when each was taken (EXIF).")
     ] = OrderBy.name,
@@ -109,6 +112,7 @@ def import_(
         "scan": scan,
         "check": check,
         "check_off": check_off,
+        "known_planes": known_planes,
     }
     plan = importing.understood(parts, reference, order.value)
     importing.show(plan, folder, rig, dry_run=dry_run, as_json=json)

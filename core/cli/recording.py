@@ -52,7 +52,12 @@ from core.pipeline.steps.workspace import read_calibration
 STATUS_S = 5.0
 """No more often in s a scan tells how many frames it has, or what would expose stripes better."""
 
-_TARGETS = {"camera": ("camera_target",), "planes": ("plane_target",), "check": ("plane_target",), "scan": ()}
+_TABLES = {
+    "camera": ("camera_target",),
+    "planes": ("plane_target", "laser_fan"),
+    "check": ("plane_target", "laser_fan"),
+    "scan": (),
+}
 """Tables of rig.toml that a part needs."""
 
 
@@ -64,11 +69,11 @@ def request(
     Raises
     ------
     core.errors.InputError
-        If rig.toml or a calibration cannot be read, or the rig does not state the target that is to be recorded.
+        If rig.toml or a calibration cannot be read, or the rig does not state the target, or the fan, of that part.
     """
     file = folder / "rig.toml"
     rig = read_rig(file)
-    require_tables(rig, file, *_TARGETS[step])
+    require_tables(rig, file, *_TABLES[step])
     camera = fan = None
     if calibrations is not None and step in ("scan", "check"):
         known = read_calibration(calibrations)

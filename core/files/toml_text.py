@@ -11,12 +11,18 @@ from typing import Any
 def toml_text(tables: Mapping[str, Any]) -> str:
     """Write tables as TOML text: single values first, then tables, then lists of tables.
 
-    What is inside a table stands on one line each. Values are strings, numbers, truth values, days, and lists and
-    mappings of these; TypeError for others.
+    What is inside a table stands on one line each; a table of nothing but tables has a block for each of them. Values
+    are strings, numbers, truth values, days, and lists and mappings of these; TypeError for others.
     """
     single = [(key, value) for key, value in tables.items() if not _is_table(value) and not _are_tables(value)]
     blocks = [_lines(single)] if single else []
-    blocks += [[f"[{_key(key)}]", *_lines(value.items())] for key, value in tables.items() if _is_table(value)]
+    for key, value in tables.items():
+        if _is_table(value):
+            within = value and all(map(_is_table, value.values()))
+            inner = (
+                {f"{_key(key)}.{_key(name)}": table for name, table in value.items()} if within else {_key(key): value}
+            )
+            blocks += [[f"[{name}]", *_lines(table.items())] for name, table in inner.items()]
     for key, value in tables.items():
         if _are_tables(value):
             blocks += [[f"[[{_key(key)}]]", *_lines(table.items())] for table in value]

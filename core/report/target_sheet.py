@@ -14,7 +14,7 @@ from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
 
 from core.errors import InputError
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle, Target
 from core.image.targets.charuco import dictionary_of
 from core.messages import Message, capital, label
 from core.model.arrays import Array, frozen_array, set_field
@@ -161,6 +161,8 @@ def _largest_length(target: Target, art: TargetArt, paper: SheetPaper) -> float:
 def _length(target: Target) -> float:
     if isinstance(target, CircleGrid):
         return target.pitch_mm
+    if isinstance(target, Rectangle):
+        return target.width_mm
     return target.side_mm if isinstance(target, BlackSquare) else target.square_mm
 
 
@@ -171,6 +173,8 @@ def _smaller(target: Target, most_mm: float, paper: SheetPaper) -> Message:
         return Message("target.advice_smaller_pitch", "make its pitch at most {most_mm:g} mm for {paper}", **values)
     if isinstance(target, BlackSquare):
         return Message("target.advice_smaller_side", "make its side at most {most_mm:g} mm for {paper}", **values)
+    if isinstance(target, Rectangle):
+        return Message("target.advice_smaller_width", "make its width at most {most_mm:g} mm for {paper}", **values)
     return Message("target.advice_smaller_squares", "make its squares at most {most_mm:g} mm for {paper}", **values)
 
 
@@ -271,6 +275,8 @@ def target_art(target: Target) -> TargetArt:
             return _circle_grid(target)
         case BlackSquare():
             return _of_rectangles(np.array([[0.0, 0.0, target.side_mm, target.side_mm]]), 1, 1, target.side_mm)
+        case Rectangle():
+            return _rectangle(target)
 
 
 def _of_rectangles(rectangles: Array, columns: int, rows: int, square: float) -> TargetArt:
@@ -284,6 +290,15 @@ def _black_squares(columns: int, rows: int, square: float) -> Array:
     return np.column_stack([column * square, row * square, side, side])
 
 
+def _rectangle(rectangle: Rectangle) -> TargetArt:
+    """Dark throughout, or four bars that leave the inside white."""
+    width, height, line = rectangle.width_mm, rectangle.height_mm, rectangle.line_mm
+    beside = height - 2 * line
+    bars = [[0, 0, width, line], [0, height - line, width, line], [0, line, line, beside]]
+    bars += [[width - line, line, line, beside]]
+    return TargetArt(width, height, np.array(bars if line else [[0.0, 0.0, width, height]], float), np.zeros((0, 3)))
+
+
 def _charuco(board: Charuco) -> TargetArt:
     """OpenCV's pattern since 4.6: the first square black, markers numbered row by row in the white ones."""
     dictionary = dictionary_of(board)
@@ -292,7 +307,7 @@ def _charuco(board: Charuco) -> TargetArt:
     cells = dictionary.markerSize + 2  # with the black rim
     cell, rim = marker / cells, (square - marker) / 2
     rectangles = [_black_squares(board.columns, board.rows, square)]
-    for number, (j, i) in enumerate(zip(row, column, strict=True)):
+    for number, (j, i) in enumerate(zip(row, column, strict=True), board.first_id):
         black = cv2.aruco.generateImageMarker(dictionary, number, cells) < 128
         y, x = np.nonzero(black)
         side = np.full(len(x), cell)

@@ -10,7 +10,7 @@ from datetime import date, datetime
 from decimal import ROUND_HALF_EVEN, Decimal
 
 from core import messages
-from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets import Charuco, Checkerboard, CircleGrid, Rectangle, Target
 from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
@@ -388,4 +388,8 @@ def target_in_words(target: Target, words: Words = ENGLISH) -> str:
         kind = words("asymmetric circle grid" if target.asymmetric else "circle grid")
         pitch = f"{words('pitch')} {words.general(target.pitch_mm)} mm"
         return words.joined([kind, f"{target.columns} × {target.rows}", pitch])
+    if isinstance(target, Rectangle):
+        kind = words("outlined rectangle" if target.line_mm else "dark rectangle")
+        size = f"{words.general(target.width_mm)} × {words.general(target.height_mm)} mm"
+        return words.joined([kind, size])
     return words.joined([words("black square"), f"{words('side')} {words.general(target.side_mm)} mm"])

@@ -179,7 +179,7 @@ def _planes(project: Project) -> dict[str, str]:
     return {
         label("pictures of the plane target"): project.sources.planes,
         label("plane target"): _digest(as_calibrated_with(tables["plane_target"])),
-        label("laser"): _digest(tables["laser_fan"]),
+        label("laser"): _digest(tables.get("laser_fan")),
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("left-out poses"): _left_out(project, "planes"),
         label("constraint of the fan"): str(project.options.constrain_fan),
@@ -210,6 +210,8 @@ def _scan(project: Project) -> dict[str, str]:
     stated |= _air(project)
     if project.sources.check:
         stated[label("pictures of the interim check")] = project.sources.check
+    if project.rig.known_planes:
+        stated[label("known planes")] = _digest(tables["known_planes"])
     return {
         label("recording"): project.sources.scan,
         label("colour channel"): project.rig.channel_of("scan") or "",

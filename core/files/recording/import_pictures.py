@@ -16,7 +16,7 @@ from core.files.json_text import write_json
 from core.files.linking import Way, link
 from core.files.reading import MISSING, read_bytes, read_json, resolved
 from core.files.recording.import_plan import ImportPlan, Where
-from core.files.recording.recording_set import CHECK, PARTS, RIG
+from core.files.recording.recording_set import CHECK, KNOWN_PLANES, PARTS, RIG
 from core.files.recording.rig import read_rig
 from core.files.recording.set_listing import check_sizes, pictures_in
 from core.held_files import remove_tree, rename
@@ -72,17 +72,23 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     ways: dict[str, Way] = {}
     total = sum(len(one.files()) for one in plan.pictures)
     made: dict[Path, Path] = {}
+    filled: dict[str, Path] = {}
     try:
         for part, pictures in parts.items():
-            remove_leftovers(target / part)
-            beside = beside_of(target / part)
-            beside.mkdir()
-            made[beside] = target / part
+            around, _, within = part.rpartition("/")
+            if around in filled:
+                filled[part] = filled[around] / within
+            else:
+                make_folder((target / part).parent)
+                remove_leftovers(target / part)
+                filled[part] = beside_of(target / part)
+                made[filled[part]] = target / part
+            filled[part].mkdir()
             for one in pictures:
                 for name, source in one.files():
                     if not source.is_file():
                         raise InputError(MISSING, where=source)
-                    ways[name] = link(source, beside / name.partition("/")[2], symbolic=True)
+                    ways[name] = link(source, filled[part] / name.removeprefix(f"{part}/"), symbolic=True)
                     progress("importing", len(ways), total)
         for beside, place in made.items():
             if place.is_dir():
@@ -114,7 +120,7 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
                 where=place,
                 todo=Message("import.advice_other_set", "name another set, or remove this folder first"),
             )
-    kept = [path for part in (*PARTS, CHECK) for path in pictures_in(target / part)]
+    kept = [path for part in (*PARTS, CHECK, KNOWN_PLANES) for path in pictures_in(target / part)]
     check_sizes([*kept, *(path for one in plan.pictures for _, path in one.files())])
     if rig is not None:
         read_rig(rig)
@@ -173,7 +179,7 @@ def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...
     """One import as the log keeps it; every file with its place, so that its origin stays known."""
     taken = {name: one.taken_at for one in plan.pictures for name, _ in one.files()[:1]}
     request = plan.request
-    names = ("camera", "planes", "planes_off", "scan", "check", "check_off")
+    names = ("camera", "planes", "planes_off", "scan", "check", "check_off", "known_planes")
     asked: dict[str, Where | None] = {name: getattr(request, name) for name in names}
     return {
         "imported_at": datetime.now(UTC).astimezone().isoformat(timespec="seconds"),

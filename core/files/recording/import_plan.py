@@ -23,7 +23,7 @@ from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read, resolved
-from core.files.recording.recording_set import CHECK
+from core.files.recording.recording_set import CHECK, KNOWN_PLANES
 from core.files.recording.set_listing import OFF, check_sizes, is_off, notes_on_not_read, pictures_in, without_off
 from core.image.stripes.exchanged import PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.messages import Message, plural_message
@@ -67,6 +67,7 @@ class ImportRequest:
 
     `planes` are the poses of the plane target with the fan on, `planes_off` the same with it off; `scan` are frames,
     `reference` is the picture of the fan alone. `check` and `check_off` are as the poses, taken on the day of the scan.
+    `known_planes` are boards lying beside the part during the scan, called as they are.
     """
 
     camera: Where | None = None
@@ -77,6 +78,7 @@ class ImportRequest:
     order: Order = Order.NAME
     check: Where | None = None
     check_off: Where | None = None
+    known_planes: Where | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +126,7 @@ def plan_import(request: ImportRequest) -> ImportPlan:
         nothing says which pictures have the fan on.
     """
     poses, check = (request.planes, request.planes_off), (request.check, request.check_off)
-    asked = (request.camera, *poses, request.scan, request.reference, *check)
+    asked = (request.camera, *poses, request.scan, request.reference, *check, request.known_planes)
     if all(one is None for one in asked):
         raise InputError(
             Message("import.nothing", "nothing says which pictures to import"),
@@ -148,6 +150,7 @@ def plan_import(request: ImportRequest) -> ImportPlan:
         _poses("planes", request.planes, request.planes_off, request.order) if request.planes else None,
         _frames(request.scan, request.reference, request.order) if request.scan else None,
         _poses(CHECK, request.check, request.check_off, request.order) if request.check else None,
+        _boards(request.known_planes) if request.known_planes else None,
     ]
     parts = [part for part in found if part is not None]
     pictures = tuple(one for part in parts for one in part.pictures)
@@ -161,6 +164,13 @@ class _Part:
     pictures: tuple[ImportedPicture, ...]
     rule: Message
     notes: tuple[Message, ...] = ()
+
+
+def _boards(where: Where) -> _Part:
+    """Their names say which board they show, so they are kept."""
+    files, notes = _listed(where)
+    pictures = tuple(ImportedPicture(KNOWN_PLANES, path.stem, path) for path in files)
+    return _Part(pictures, Message("import.names_kept", "called as they are"), notes)
 
 
 def _views(where: Where, order: Order) -> _Part:

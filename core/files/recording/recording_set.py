@@ -8,6 +8,7 @@ The layout is fixed, so that any program can write one::
     SET/scan/reference.png  fan only (optional)
     SET/scan/*              frames, in the order of their names
     SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
+    SET/scan/planes/NAME.png  a board lying beside the part during the scan; NAME_2.png … = the same board (optional)
 
 Of pictures in planes, scan and check NAME@2.png and NAME@3.png are further exposures, shorter or longer: of a stripe
 they show what is saturated, or too dark, in the first.
@@ -28,10 +29,11 @@ from core.acquire.channel import Channel
 from core.errors import InputError
 from core.files.reading import file_hash, resolved
 from core.files.recording.recording_log import FolderLog
-from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
+from core.files.recording.rig import PLANE_TARGET, KnownPlaneTarget, Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
     NAMES_SHOWN,
     PlanePair,
+    board_pictures,
     check_sizes,
     further_exposures,
     names_not_read,
@@ -40,15 +42,40 @@ from core.files.recording.set_listing import (
     plane_pairs,
     scan_frames,
 )
+from core.image.targets import Target
 from core.messages import Message
 
 PARTS = ("camera", "planes", "scan")
 """The parts of a set, each a folder of pictures."""
 CHECK = "check"
 """The folder of the interim check, beside the parts: a set need not have one."""
+KNOWN_PLANES = "scan/planes"
+"""The folder of boards lying beside the part, within that of the scan: a set need not have one."""
 RIG = "rig.toml"
 _BRACKETED = ("planes", "scan", CHECK)
 """Folders whose pictures may have further exposures."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlanePictures:
+    """Known plane of a scan: a board called `name`, what rig.toml states of it, and the pictures that show it.
+
+    Without pictures of its own it is seen in the scan's.
+    """
+
+    name: str
+    stated: KnownPlaneTarget
+    pictures: tuple[Path, ...] = ()
+
+    @property
+    def target(self) -> Target:
+        """Target that is printed on the board."""
+        return self.stated.target
+
+    @property
+    def print_of(self) -> str:
+        """Name of the print that the board's is a part of: "plane_target", or a known plane's, usually its own."""
+        return self.stated.print_of or self.name
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -65,6 +92,8 @@ class RecordingSet:
         The further exposures, by their number (2, 3), of each picture that has any.
     rig_hash
         SHA-256 of rig.toml.
+    known_planes
+        Boards that lie beside the part during the scan, in the order of their names.
     """
 
     name: str
@@ -77,6 +106,7 @@ class RecordingSet:
     check: tuple[PlanePair, ...] = ()
     further: Mapping[Path, Mapping[int, Path]] = field(default_factory=dict)
     rig_hash: str = ""
+    known_planes: tuple[PlanePictures, ...] = ()
 
     def name_of(self, path: Path) -> str:
         """Return a picture's name within the set, as "camera/view00.png", wherever its file lies."""
@@ -105,6 +135,10 @@ class RecordingSet:
     def pictures_of(self, pairs: Iterable[PlanePair]) -> list[Path]:
         """List all pictures of these poses: with the fan on, off, and their further exposures."""
         return self.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
+
+    def known_plane_pictures(self) -> list[Path]:
+        """List all pictures of known planes."""
+        return [path for plane in self.known_planes for path in plane.pictures]
 
     def where(self, part: str) -> Path | str:
         """Return the folder of a part of the set, or the part's name if it has none, to name it in messages."""
@@ -181,8 +215,10 @@ def open_set(folder: Path) -> RecordingSet:
     places = {part: folder / part for part in PARTS}
     if (folder / CHECK).is_dir():
         places[CHECK] = folder / CHECK
+    if (folder / KNOWN_PLANES).is_dir():
+        places[KNOWN_PLANES] = folder / KNOWN_PLANES
     found = _listed(resolved(folder).name, rig, places, file_hash(folder / RIG))
-    check_sizes([path for part in (*PARTS, CHECK) for path in _paths(found, part)])
+    check_sizes([path for part in (*PARTS, CHECK, KNOWN_PLANES) for path in _paths(found, part)])
     return found
 
 
@@ -217,9 +253,13 @@ def gather_set(
                 todo=Message("advice.keep_in_two_folders", "keep their pictures in two folders"),
             )
     places = [folders[part] for part in reversed(PARTS) if part in folders]
+    within = None if scan is None else scan / Path(KNOWN_PLANES).name
+    if within is not None and within.is_dir() and resolved(within) not in taken:
+        folders[KNOWN_PLANES] = within
     found = _listed(name or (resolved(places[0]).parent.name if places else ""), rig, folders, _rig_hash(rig, places))
-    for part in (*PARTS, CHECK):  # between the parts, each step compares with the camera's calibration
+    for part in ("camera", "planes", CHECK):  # between the parts, each step compares with the camera's calibration
         check_sizes(_paths(found, part))
+    check_sizes([*_paths(found, "scan"), *_paths(found, KNOWN_PLANES)])
     return found
 
 
@@ -260,13 +300,24 @@ def require_planes(recording_set: RecordingSet) -> None:
 
 
 def require_scan(recording_set: RecordingSet) -> None:
-    """Raise InputError unless the set has frames of a scan."""
+    """Raise InputError unless the set has frames of a scan, and rig.toml says what its known planes are."""
     if not recording_set.frames:
         raise _nothing_in(
             recording_set,
             "scan",
             Message("set.no_frames", "there are no frames of a scan"),
             Message("advice.record_sweeps", "record 30 or more sweep positions"),
+        )
+    untold = [plane for plane in recording_set.known_planes if plane.name not in recording_set.rig.known_planes]
+    if untold and PLANE_TARGET in recording_set.rig.unstated:
+        raise InputError(
+            Message(
+                "set.known_plane_unstated",
+                "there is neither a table [known_planes.{name}] nor [plane_target] that says what is printed on it",
+                name=untold[0].name,
+            ),
+            where=untold[0].pictures[0],
+            todo=Message("advice.state_known_plane", "add one of them to rig.toml, or remove the picture"),
         )
 
 
@@ -284,14 +335,24 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
     reference, frames = scan_frames(folders.get("scan"))
     check = plane_pairs(folders.get(CHECK))
+    boards = board_pictures(folders.get(KNOWN_PLANES), rig.known_planes)
+    as_plane_target = KnownPlaneTarget(
+        rig.plane_target, rig.plane_board, rig.plane_margin_mm, PLANE_TARGET, temperature=rig.part.target
+    )
+    known = tuple(
+        PlanePictures(name, rig.known_planes.get(name, as_plane_target), boards.get(name, ()))
+        for name in sorted({*boards, *rig.known_planes})
+    )
     further = {first: others for part in _BRACKETED for first, others in further_exposures(folders.get(part)).items()}
-    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, rig_hash)
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, rig_hash, known)
 
 
 def _paths(recording_set: RecordingSet, part: str) -> list[Path]:
     """All pictures of one part."""
     if part == "camera":
         return list(recording_set.camera)
+    if part == KNOWN_PLANES:
+        return recording_set.known_plane_pictures()
     if part == "scan":
         return recording_set.with_further(
             [*([recording_set.reference] if recording_set.reference else []), *recording_set.frames]

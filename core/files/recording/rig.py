@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -21,7 +22,7 @@ from core.files.reading import read_toml
 from core.files.tables import OptionalDay, ShortText
 from core.files.toml_text import toml_text
 from core.image.mosaic import Pattern
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle, Target
 from core.image.targets.kinds import DICTIONARIES
 from core.inspect.uncertainty.part import MATERIALS, Part, TargetTemperature
 from core.messages import Message, label
@@ -46,6 +47,8 @@ _A_PLAIN_CHANNEL = '"red", "green" or "blue"'
 _A_CHANNEL = label('"red", "green", "blue", or a laser\'s colour: "red-green", "green-red" or "blue-red"')
 _A_MOSAIC = label('"RGGB", "BGGR", "GRBG" or "GBRG"')
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
+_FOUR_CORNERS = label("a list of four [u, v] in pixels")
+_TWO_LENGTHS = label("two lengths in mm above 0 and at most 5000, [width, height]")
 _Celsius = Annotated[float, Field(ge=-50, le=200, allow_inf_nan=False)]
 _UOfCelsius = Annotated[float, Field(ge=0, le=200, allow_inf_nan=False)]
 _Alpha = Annotated[float, Field(ge=-1e-4, le=1e-3, allow_inf_nan=False)]
@@ -94,8 +97,9 @@ class _Printed(Table):
 
     @model_validator(mode="after")
     def _in_millimetres(self) -> _Printed:
-        for key in ("square_mm", "pitch_mm", "side_mm"):
-            value = getattr(self, key, None)
+        for key in ("square_mm", "pitch_mm", "side_mm", "size_mm"):
+            stated = getattr(self, key, None)
+            value = min(stated) if isinstance(stated, list) else stated
             if value is not None and value < SMALLEST_PRINTED_MM:
                 raise Clash(
                     key,
@@ -158,6 +162,7 @@ class _Charuco(_Printed):
     dictionary: str = Field(
         "DICT_4X4_50", pattern=rf"^(?i:{'|'.join(DICTIONARIES)})$", description='one like "DICT_4X4_50"'
     )
+    first_id: int = Field(0, ge=0, le=999, description="a whole number, 0 to 999")
 
     @model_validator(mode="after")
     def _marker_inside_square(self) -> _Charuco:
@@ -175,7 +180,7 @@ class _Charuco(_Printed):
 
     def target(self) -> Target:
         columns, rows = self.squares
-        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary.upper())
+        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary.upper(), self.first_id)
 
 
 class _CircleGrid(_Printed):
@@ -197,8 +202,52 @@ class _BlackSquare(_Printed):
         return BlackSquare(self.side_mm)
 
 
+class _Rectangle(_Printed):
+    kind: Literal["rectangle"]
+    size_mm: list[_Length] = Field(min_length=2, max_length=2, description=_TWO_LENGTHS)
+    line_mm: _Length | None = Field(None, description=_A_LENGTH)
+    corners_px: list[_Vertex] | None = Field(None, min_length=4, max_length=4, description=_FOUR_CORNERS)
+
+    def target(self) -> Target:
+        width, height = self.size_mm
+        corners = None if self.corners_px is None else tuple((u, v) for u, v in self.corners_px)
+        return Rectangle(width, height, self.line_mm or 0.0, corners)
+
+
 _CameraTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid, Field(discriminator="kind")]
 TargetTable: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid | _BlackSquare, Field(discriminator="kind")]
+
+
+_NAME = r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$"
+_A_NAME = label("a name of at most 40 letters, digits, - and _")
+
+
+class _KnownPlane(Table):
+    """What a table [known_planes.NAME] says beside its target."""
+
+    print_of: str | None = Field(None, description='"plane_target" or the name of another known plane')
+    region_px: _Polygon | None = Field(None, description=_A_POLYGON)
+
+
+class _KnownCheckerboard(_KnownPlane, _Checkerboard): ...
+
+
+class _KnownCharuco(_KnownPlane, _Charuco): ...
+
+
+class _KnownCircleGrid(_KnownPlane, _CircleGrid): ...
+
+
+class _KnownBlackSquare(_KnownPlane, _BlackSquare): ...
+
+
+class _KnownRectangle(_KnownPlane, _Rectangle): ...
+
+
+_KnownPlaneTable: TypeAlias = Annotated[
+    _KnownCheckerboard | _KnownCharuco | _KnownCircleGrid | _KnownBlackSquare | _KnownRectangle,
+    Field(discriminator="kind"),
+]
 
 
 class _LaserFan(Table):
@@ -467,6 +516,9 @@ class RigTables(Table):
     camera_target: _CameraTarget | None = Field(None, description="a table [camera_target] with kind and sizes")
     plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
     laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
+    known_planes: dict[str, _KnownPlaneTable] | None = Field(
+        None, description="tables [known_planes.NAME] with kind and sizes"
+    )
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     camera: _Camera | None = Field(None, description="a table [camera] with row_time_us")
     channel: Channel | None = Field(None, description=_A_CHANNEL)
@@ -485,18 +537,15 @@ class RigTables(Table):
     check: _Check | None = Field(None, description="a table [check] with readjust")
     part: _Part | None = Field(None, description="a table [part]")
     reference_target: TargetTable | None = Field(None, description="a table [reference_target] with kind and sizes")
-    name: str | None = Field(
-        None,
-        pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
-        description="a name of at most 40 letters, digits, - and _",
-    )
+    name: str | None = Field(None, pattern=_NAME, description=_A_NAME)
     simulated: bool | None = Field(None, description="true or false")
 
 
 TARGETS = ("camera_target", "plane_target", "reference_target")
 """The tables of rig.toml that describe a target."""
-STEP_TABLES = ("camera_target", "plane_target", "laser_fan")
+STEP_TABLES = ("camera_target", "plane_target")
 """The tables that one step or another cannot do without."""
+PLANE_TARGET = "plane_target"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -559,8 +608,36 @@ class ReferenceTarget:
 
 
 @dataclass(frozen=True, slots=True)
+class KnownPlaneTarget:
+    """Target on a known plane, a board that lies beside the part during the scan.
+
+    Parameters
+    ----------
+    target, board, margin_mm
+        What is printed on it, how true that is, and how far the board goes on beyond it (None: not known).
+    print_of
+        Whose print it is, so that one error of size is common to both: "plane_target", or the name of another known
+        plane. None: its own.
+    region_px
+        Polygon (u, v) in pixels within which the board lies in its pictures; None: anywhere.
+    temperature, certificate
+        As of the plane target.
+    """
+
+    target: Target
+    board: BoardTolerance = field(default_factory=BoardTolerance)
+    margin_mm: float | None = None
+    print_of: str | None = None
+    region_px: tuple[tuple[float, float], ...] | None = None
+    temperature: TargetTemperature = field(default_factory=TargetTemperature)
+    certificate: Certificate = field(default_factory=Certificate)
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """Content of rig.toml. `angle` between neighbouring lines is in rad (0 with one line).
+
+    With 0 `lines` the rig has no fan: rig.toml states that by having no table [laser_fan].
 
     `camera_board` and `plane_board` say how true the two targets are, `plane_margin_mm` how far the plate of the second
     goes on beyond what is printed on it, None if that is not known. `channels` are those of steps that look at another
@@ -602,6 +679,13 @@ class Rig:
     """By the names of the targets' tables, the certificates that are stated; what they say is only reported."""
     simulated: bool | None = None
     """Whether the pictures are rendered by a program; None: not known."""
+    known_planes: Mapping[str, KnownPlaneTarget] = field(default_factory=dict, hash=False)
+    """By the names of their tables, the targets on known planes; one without a table is as the plane target."""
+
+    @property
+    def has_fan(self) -> bool:
+        """Whether the rig has a fan of fixed lines."""
+        return self.lines > 0
 
     @property
     def one_target(self) -> bool:
@@ -638,6 +722,12 @@ def default_rig() -> Rig:
 def require_tables(rig: Rig, path: Path, *names: str) -> None:
     """Raise InputError if the rig.toml at `path` lacks one of the tables `names`."""
     for name in names:
+        if name == "laser_fan" and not rig.has_fan:
+            raise InputError(
+                Message("rig.no_fan", "it has no table [laser_fan], which states that the rig has no fan"),
+                where=path,
+                todo=Message("advice.state_fan", "add the table with lines and angle_deg if the rig has one"),
+            )
         if name in rig.unstated:
             wanted = RigTables.model_fields[name].description
             raise InputError(
@@ -693,8 +783,11 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
                     "advice.another_reference", "take a target of another kind, of other counts or of another size"
                 ),
             )
-    if tables.laser_fan is not None:
-        stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
+    fan = tables.laser_fan
+    stated["lines"] = 0 if fan is None else fan.lines
+    stated["angle"] = 0.0 if fan is None else math.radians(fan.angle_deg or 0.0)
+    if tables.known_planes is not None:
+        stated["known_planes"] = _known_planes(path, within, tables.known_planes)
     if tables.stability is not None:
         stated |= {"stability": tables.stability.stability(), "drift": tables.stability.drift()}
     if tables.air is not None:
@@ -747,7 +840,10 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "reference_target": None
         if rig.reference is None
         else _target_table(rig.reference.target) | _tolerance_table(rig.reference.board),
-        "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
+        "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None})
+        if rig.has_fan
+        else None,
+        "known_planes": {name: _known_plane_table(one) for name, one in rig.known_planes.items()} or None,
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": _stability_tables(rig.stability, rig.drift) or None,
         "air": _present({f"{name}_celsius": value for name, value in asdict(rig.air).items()}) or None,
@@ -767,7 +863,7 @@ def rig_to_toml(rig: Rig) -> str:
     return toml_text(rig_tables(rig))
 
 
-def _target(path: Path, name: str, table: TargetTable) -> Target:
+def _target(path: Path, name: str, table: TargetTable | _KnownPlaneTable) -> Target:
     try:
         return table.target()
     except WrongValue as error:  # what only the target itself can judge, as a dictionary of markers
@@ -776,7 +872,57 @@ def _target(path: Path, name: str, table: TargetTable) -> Target:
         ) from error
 
 
-def _tolerance(table: TargetTable) -> BoardTolerance:
+def _known_planes(path: Path, within: str, tables: Mapping[str, _KnownPlaneTable]) -> dict[str, KnownPlaneTarget]:
+    for name in tables:
+        if re.match(_NAME, name) is None:
+            raise InputError(
+                Message(
+                    "rig.known_plane_name", '{field} has a table "{value}", not {wanted}',
+                    field=f"{within}known_planes", value=name, wanted=_A_NAME,
+                ),
+                where=path,
+            )  # fmt: skip
+    planes = {name: _known_plane(path, f"{within}known_planes.{name}", table) for name, table in tables.items()}
+    for name, plane in planes.items():
+        printed = plane.print_of
+        if printed in (None, PLANE_TARGET) or (printed in planes and planes[printed].print_of is None):
+            continue
+        raise InputError(
+            Message(
+                "rig.no_such_print",
+                "{field} is {value}, neither plane_target nor a known plane that states no print_of itself",
+                field=f"{within}known_planes.{name}.print_of",
+                value=printed,
+            ),
+            where=path,
+        )
+    return planes
+
+
+def _known_plane(path: Path, name: str, table: _KnownPlaneTable) -> KnownPlaneTarget:
+    return KnownPlaneTarget(
+        _target(path, name, table),
+        _tolerance(table),
+        table.margin_mm,
+        table.print_of,
+        None if table.region_px is None else tuple((u, v) for u, v in table.region_px),
+        table.temperature(),
+        table.of_certificate(),
+    )
+
+
+def _known_plane_table(plane: KnownPlaneTarget) -> dict[str, Any]:
+    region = None if plane.region_px is None else [list(vertex) for vertex in plane.region_px]
+    return {
+        **_target_table(plane.target),
+        **_tolerance_table(plane.board),
+        **_present({"margin_mm": plane.margin_mm, "print_of": plane.print_of, "region_px": region}),
+        **temperature_table(plane.temperature),
+        **_certificate_table(plane.certificate),
+    }
+
+
+def _tolerance(table: TargetTable | _KnownPlaneTable) -> BoardTolerance:
     return BoardTolerance(table.flatness_mm, table.scale_sd)
 
 
@@ -804,6 +950,7 @@ def _target_table(target: Target) -> dict[str, Any]:
             "square_mm": float(target.square_mm),
             "marker_mm": float(target.marker_mm),
             "dictionary": target.dictionary_id,
+            **({"first_id": target.first_id} if target.first_id else {}),
         }
     if isinstance(target, CircleGrid):
         return {
@@ -811,6 +958,13 @@ def _target_table(target: Target) -> dict[str, Any]:
             "circles": [target.columns, target.rows],
             "pitch_mm": float(target.pitch_mm),
             "asymmetric": target.asymmetric,
+        }
+    if isinstance(target, Rectangle):
+        corners = None if target.corners_px is None else [list(corner) for corner in target.corners_px]
+        return {
+            "kind": "rectangle",
+            "size_mm": [float(target.width_mm), float(target.height_mm)],
+            **_present({"line_mm": target.line_mm or None, "corners_px": corners}),
         }
     return {"kind": "black_square", "side_mm": float(target.side_mm)}
 

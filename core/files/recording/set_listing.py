@@ -6,7 +6,7 @@ import contextlib
 import re
 import struct
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -33,6 +33,8 @@ _NOT_READ = frozenset(
 )
 """Endings (lower case) of pictures and films that a camera or a telephone may have written beside those that are read:
 what coding they have lost, a stripe's noise does not show."""
+_NUMBERED = re.compile(r"(.+)_(?:[2-9]|[1-9]\d+)")
+"""Name of a second or later picture of one board: NAME_2, NAME_3."""
 NAMES_SHOWN = 3
 """So many files are named in a note."""
 
@@ -147,6 +149,27 @@ def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
                 todo=Message("advice.add_or_remove", "add it or remove this one"),
             )
     return tuple(pairs)
+
+
+def board_pictures(folder: Path | None, stated: Collection[str] = ()) -> dict[str, tuple[Path, ...]]:
+    """List the pictures of each board in a folder by its name: NAME, NAME_2, NAME_3 … show the board NAME.
+
+    So named pictures are of NAME only where there is a picture NAME, or a board that is `stated` to be called so; else,
+    or where NAME_2 itself is stated, they show a board of their own.
+    """
+    pictures = pictures_in(folder)
+    known = {*stated, *(path.stem for path in pictures)}
+    found: dict[str, list[Path]] = {}
+    for path in pictures:
+        numbered = None if path.stem in stated else _NUMBERED.fullmatch(path.stem)
+        name = numbered[1] if numbered is not None and numbered[1] in known else path.stem
+        found.setdefault(name, []).append(path)
+    return {name: tuple(sorted(paths, key=_by_number)) for name, paths in found.items()}
+
+
+def _by_number(path: Path) -> tuple[int, str]:
+    number = path.stem.rpartition("_")[2]
+    return (int(number) if _NUMBERED.fullmatch(path.stem) else 1), path.name
 
 
 def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:

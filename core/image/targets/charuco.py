@@ -52,7 +52,7 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
                 return _view(board, picture, enlarged(corners, factor), ids, factor, name)
         if factor == 1:
             break
-    counted = _counted(dictionary, small) if markers else None
+    counted = _counted(dictionary, small) if markers and not board.first_id else None
     raise _failure(board, markers, name) if counted is None else _other_board(board, counted, name)
 
 
@@ -65,12 +65,12 @@ def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
         If the board needs more markers than its dictionary has.
     """
     dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
-    needed, available = board.columns * board.rows // 2, len(dictionary.bytesList)
+    needed, available = board.first_id + board.columns * board.rows // 2, len(dictionary.bytesList)
     if needed > available:
         raise InputError(
             Message(
                 "target.few_markers",
-                "the board has {n} markers, but {dictionary} only {available}",
+                "the board has markers to number {n}, but {dictionary} only {available}",
                 n=needed,
                 dictionary=board.dictionary_id,
                 available=available,
@@ -87,7 +87,10 @@ def _best_reading(
     """Corners (N, 2), their indices into `board.points`, and how many markers were read."""
     best: tuple[Array, NDArray[np.intp], int] = (np.empty((0, 2)), np.empty(0, dtype=np.intp), 0)
     for old_pattern in (False, True) if board.rows % 2 == 0 else (False,):
-        layout = cv2.aruco.CharucoBoard((board.columns, board.rows), board.square_mm, board.marker_mm, dictionary)
+        numbers = board.first_id + np.arange(board.columns * board.rows // 2)
+        layout = cv2.aruco.CharucoBoard(
+            (board.columns, board.rows), board.square_mm, board.marker_mm, dictionary, numbers
+        )
         layout.setLegacyPattern(old_pattern)
         corners, ids, _, marker_ids = cv2.aruco.CharucoDetector(layout).detectBoard(picture)
         markers = 0 if marker_ids is None else len(marker_ids)

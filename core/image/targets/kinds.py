@@ -62,6 +62,7 @@ class Charuco:
     """Checkerboard of `columns` × `rows` squares of `square_mm`, with markers of `marker_mm` in its white ones.
 
     `dictionary` is OpenCV's name of the markers, with or without "DICT_" in front. Any part of the board will do.
+    `first_id` is the number of the first marker: boards that share none are told apart in one picture.
     """
 
     columns: int
@@ -69,8 +70,13 @@ class Charuco:
     square_mm: float
     marker_mm: float
     dictionary: str = "DICT_4X4_50"
+    first_id: int = 0
 
     def __post_init__(self) -> None:
+        if self.first_id < 0:
+            raise WrongValue(
+                Message("target.first_id_negative", "first_id must not be negative, not {value}", value=self.first_id)
+            )
         _check_grid(self.columns, self.rows, 3, label("squares"))
         _check_length(self.square_mm, "square_mm")
         _check_length(self.marker_mm, "marker_mm")
@@ -154,7 +160,59 @@ class BlackSquare:
         return np.array([[0.0, 0.0, 0.0], [s, 0.0, 0.0], [s, s, 0.0], [0.0, s, 0.0]])
 
 
-Target = Checkerboard | Charuco | CircleGrid | BlackSquare
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """Printed rectangle on a light ground: dark throughout, or drawn as an outline of `line_mm`.
+
+    Its frame begins at its outer corner. A rectangle looks the same turned by 180°: its first corner is that of the two
+    nearer to the top left of the picture.
+
+    Parameters
+    ----------
+    width_mm, height_mm
+        Of its outer edges.
+    line_mm
+        Width of the outline; 0: dark throughout.
+    corners_px
+        Where in the picture its four outer corners are about, [u, v] each, in any order; None: they are searched for.
+    """
+
+    width_mm: float
+    height_mm: float
+    line_mm: float = 0.0
+    corners_px: tuple[tuple[float, float], ...] | None = None
+
+    def __post_init__(self) -> None:
+        _check_length(self.width_mm, "width_mm")
+        _check_length(self.height_mm, "height_mm")
+        if not 0 <= 2 * self.line_mm < min(self.width_mm, self.height_mm):
+            raise WrongValue(
+                Message(
+                    "target.line_too_wide",
+                    "line_mm must be from 0 to less than half of the shorter side, not {line_mm:g}",
+                    line_mm=self.line_mm,
+                )
+            )
+
+    @property
+    def points(self) -> Array:
+        """The four outer corners in mm, then the four inner ones if it is an outline: (4, 3) or (8, 3)."""
+        rims = (0.0, self.line_mm) if self.line_mm else (0.0,)
+        return np.array(
+            [
+                [x, y, 0.0]
+                for rim in rims
+                for x, y in (
+                    (rim, rim),
+                    (self.width_mm - rim, rim),
+                    (self.width_mm - rim, self.height_mm - rim),
+                    (rim, self.height_mm - rim),
+                )
+            ]
+        )
+
+
+Target = Checkerboard | Charuco | CircleGrid | BlackSquare | Rectangle
 
 
 def _grid(columns: int, rows: int, step: float) -> Array:

@@ -36,6 +36,7 @@ from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
+from core.files.recording.rig import require_tables
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
 from core.files.results.rig_history import PastCheck, store_check
@@ -86,6 +87,7 @@ def check_step(
         If a calibration is missing or wrong, or no picture shows target and stripes.
     """
     recording_set = work.recording_set
+    require_tables(recording_set.rig, recording_set.rig_file, "laser_fan")
     if not recording_set.check:
         raise InputError(
             Message("check.no_pictures", "there are no pictures of an interim check"),

@@ -11,7 +11,7 @@ import numpy as np
 from core.errors import InputError, NoThickness
 from core.files.pictures import compression_of
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.rig import GaugeSpec, part_table
+from core.files.recording.rig import GaugeSpec, part_table, require_tables
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
@@ -78,6 +78,7 @@ def profile_step(
         If a calibration is missing, a fan of one line is not told how the faces stand, or no picture gives a step.
     """
     settings, found = settings or Options(), work.recording_set
+    require_tables(found.rig, found.rig_file, "laser_fan")
     paths = _pictures(found, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan

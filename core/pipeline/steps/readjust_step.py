@@ -18,6 +18,7 @@ from core.files.atomic import write_bytes
 from core.files.reading import file_hash, read_bytes
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
+from core.files.recording.rig import require_tables
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import read_camera
 from core.files.results.planes_file import write_planes
@@ -47,6 +48,7 @@ def propose_readjustment(
     InputError
         If there is no check that was not used for it already, or `core.calibrate.readjustment.readjusted` refuses.
     """
+    require_tables(pictures.recording_set.rig, pictures.recording_set.rig_file, "laser_fan")
     recording_set = fresh_check(pictures.recording_set, calibration.fan)
     pictures = pictures.of(recording_set)
     if not recording_set.check:

@@ -273,7 +273,7 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], channel: str | None, wo
         said[label("Plane target")] = target_in_words(rig.plane_target, words)
     if rig.reference is not None:
         said[label("Reference target")] = target_in_words(rig.reference.target, words)
-    if "laser_fan" not in rig.unstated:
+    if rig.has_fan:
         said[label("Fixed laser")] = (
             words("{n} lines, {angle}° apart", n=rig.lines, angle=angle) if rig.lines > 1 else words("1 line")
         )

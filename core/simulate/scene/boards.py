@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle, Target
 from core.image.targets.charuco import dictionary_of
 from core.model.arrays import Array
 from core.simulate.scene.patterns import Pattern
@@ -27,6 +27,8 @@ def printed(target: Target) -> Pattern:
         return _charuco(target)
     if isinstance(target, CircleGrid):
         return _circle_grid(target)
+    if isinstance(target, Rectangle):
+        return _rectangle(target)
     return _black_square(target)
 
 
@@ -49,7 +51,7 @@ def _charuco(board: Charuco) -> Pattern:
     y = np.append((square * np.arange(board.rows)[:, None] + within).ravel(), board.rows * square)
     cells = np.full((len(y) - 1, len(x) - 1), WHITE)
     size = bits + 2
-    number = 0
+    number = board.first_id
     for row, column in np.ndindex(board.rows, board.columns):
         inside = cells[row * size : (row + 1) * size, column * size : (column + 1) * size]
         if (row + column) % 2 == 0:
@@ -78,6 +80,16 @@ def _black_square(square: BlackSquare) -> Pattern:
     cells = np.full((3, 3), WHITE)
     cells[1, 1] = BLACK
     return Pattern(edges, edges, cells)
+
+
+def _rectangle(rectangle: Rectangle) -> Pattern:
+    """Ink within the outer edges, white again within the outline if it is one."""
+    line = rectangle.line_mm
+    x, y = (np.array(sorted({0.0, line, side - line, side})) for side in (rectangle.width_mm, rectangle.height_mm))
+    cells = np.full((len(y) - 1, len(x) - 1), BLACK)
+    if line:
+        cells[1, 1] = WHITE
+    return _with_margin(x, y, cells)
 
 
 def _with_margin(x: Array, y: Array, cells: Array) -> Pattern:

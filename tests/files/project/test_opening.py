@@ -31,6 +31,7 @@ from core.files.project.json_form import SCHEMA, project_text
 from core.files.recording.rig import (
     Channels,
     GaugeSpec,
+    KnownPlaneTarget,
     ReferenceTarget,
     Rig,
     Validity,
@@ -39,7 +40,7 @@ from core.files.recording.rig import (
     rig_to_toml,
 )
 from core.image.stripes.stripe import StripeSettings
-from core.image.targets import BlackSquare, Charuco, CircleGrid
+from core.image.targets import BlackSquare, Charuco, CircleGrid, Rectangle
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
@@ -67,7 +68,8 @@ def full_project():
             mosaic="RGGB", reference=ReferenceTarget(BlackSquare(36.0), BoardTolerance(0.01, 1e-5)),
             part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5,
                       TargetTemperature(23.0, 0.5, 24e-6, 1e-6)),
-            certificates={"plane_target": Certificate("D-K 7", "Labor Nord", date(2028, 3, 1))}),
+            certificates={"plane_target": Certificate("D-K 7", "Labor Nord", date(2028, 3, 1))},
+            known_planes={"wall": KnownPlaneTarget(Rectangle(250.0, 150.0, 10.0), BoardTolerance(0.3, 1e-3), 5.0)}),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,

@@ -171,3 +171,12 @@ def test_a_name_that_is_not_in_the_set_is_told_with_the_nearest(whole, typed, sa
     with pytest.raises(InputError) as error:
         excluded_names(open_set(whole), ["camera/a.png", typed])
     assert said in str(error.value)
+
+
+def test_boards_beside_the_part_are_gathered_with_the_scan_unless_they_are_the_poses(whole, scattered, tmp_path):
+    scan = scattered[2]
+    (scan / "planes").mkdir()
+    write_picture(scan / "planes" / "plate.png", picture())
+    found = gather_set(default_rig(), None, None, scan)
+    assert [found.name_of(path) for path in found.known_plane_pictures()] == ["scan/planes/plate.png"]
+    assert gather_set(default_rig(), None, scan / "planes", scan).known_planes == ()

@@ -236,3 +236,21 @@ def test_pictures_of_kinds_that_are_not_read_are_told(tmp_path):
     pictures(tmp_path, "v1.png")
     (tmp_path / "v2.HEIC").write_bytes(b"x")
     assert codes(plan_import(ImportRequest(camera=Where(tmp_path))).notes) == ["set.not_read"]
+
+
+def test_boards_beside_the_part_keep_their_names_with_their_scan_or_after_it(tmp_path):
+    boards = pictures(tmp_path / "boards", "wall.png", "wall_2.png", "wall_10.png")
+    frames = pictures(tmp_path / "frames", "f1.png", "f2.png")
+    (tmp_path / "rig.toml").write_text(rig_to_toml(default_rig()))
+    both = plan_import(ImportRequest(scan=Where(frames), known_planes=Where(boards)))
+    import_pictures(both, tmp_path / "at-once", tmp_path / "rig.toml")
+    import_pictures(plan_import(ImportRequest(scan=Where(frames))), tmp_path / "one-by-one", tmp_path / "rig.toml")
+    later = plan_import(ImportRequest(known_planes=Where(boards)))
+    import_pictures(later, tmp_path / "one-by-one")
+    for name in ("at-once", "one-by-one"):
+        found = open_set(tmp_path / name)
+        assert [path.name for path in found.frames] == ["f1.png", "f2.png"]
+        (wall,) = found.known_planes
+        assert [path.name for path in wall.pictures] == ["wall.png", "wall_2.png", "wall_10.png"]
+    with pytest.raises(InputError, match="the set has its scan/planes pictures already"):
+        import_pictures(later, tmp_path / "at-once")

@@ -9,10 +9,11 @@ from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
-from core.files.recording.rig import Channels, default_rig, rig_to_toml
+from core.files.recording.rig import Channels, KnownPlaneTarget, default_rig, rig_to_toml
 from core.files.recording.set_listing import names_not_read
 from core.image.exclusion import Exclusion
 from core.image.mosaic import ALL_SITES, Sites
+from core.image.targets import Rectangle
 from core.messages import Message
 
 RIG = rig_to_toml(default_rig())
@@ -303,3 +304,59 @@ def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):
     found = open_set(folder)
     again = [picture is Exclusion.REPEATED for _, picture in PictureReader(found).stream(found.frames)]
     assert again == [False] * 4 + [True, False]
+
+
+def with_boards(folder, *names):
+    (folder / "scan" / "planes").mkdir()
+    for name in names:
+        write_picture(folder / "scan" / "planes" / f"{name}.png", picture())
+    return open_set(folder)
+
+
+def test_pictures_of_known_planes_are_no_frames_and_are_told_apart_by_their_names(folder):
+    frames = open_set(folder).frames
+    found = with_boards(folder, "plate", "plate_10", "plate_2", "wall_2", "wall_3")
+    assert found.frames == frames
+    assert {plane.name: [path.name for path in plane.pictures] for plane in found.known_planes} == {
+        "plate": ["plate.png", "plate_2.png", "plate_10.png"],
+        "wall_2": ["wall_2.png"],
+        "wall_3": ["wall_3.png"],
+    }
+    assert {plane.target for plane in found.known_planes} == {found.rig.plane_target}
+    assert {plane.print_of for plane in found.known_planes} == {"plane_target"}
+    first = found.known_plane_pictures()[0]
+    assert found.name_of(first) == "scan/planes/plate.png"
+    assert found.path_of("scan/planes/plate.png") == first
+    assert PictureReader(found).read_target(first).shape == (30, 40)
+
+
+def test_a_stated_board_takes_its_numbered_pictures_and_needs_none_of_its_own(folder):
+    rig = replace(
+        default_rig(),
+        known_planes={"wall": KnownPlaneTarget(Rectangle(250.0, 150.0)), "a_2": KnownPlaneTarget(Rectangle(9.0, 8.0))},
+    )
+    (folder / "rig.toml").write_text(rig_to_toml(rig))
+    found = with_boards(folder, "wall_2", "a", "a_2")
+    assert {plane.name: len(plane.pictures) for plane in found.known_planes} == {"a": 1, "a_2": 1, "wall": 1}
+    assert [plane.print_of for plane in found.known_planes] == ["plane_target", "a_2", "wall"]
+    assert found.known_planes[2].target == Rectangle(250.0, 150.0)
+    (folder / "scan" / "planes" / "wall_2.png").unlink()
+    assert open_set(folder).known_planes[2].pictures == (), "it is seen in the pictures of the scan"
+
+
+def test_a_board_of_which_nothing_is_stated_is_refused_when_a_scan_is_measured(folder):
+    text = (folder / "rig.toml").read_text()
+    before, _, after = text.partition("[plane_target]")
+    (folder / "rig.toml").write_text(before + after[after.index("[laser_fan]") :])
+    require_scan(open_set(folder))
+    found = with_boards(folder, "plate")
+    require_camera(found)
+    with pytest.raises(InputError, match=r"planes/plate.png: there is neither a table \[known_planes.plate\] nor"):
+        require_scan(found)
+
+
+def test_a_board_of_another_size_than_the_frames_is_refused(folder):
+    with_boards(folder, "plate")
+    write_picture(folder / "scan" / "planes" / "wall.png", picture(size=(41, 30)))
+    with pytest.raises(InputError, match=r"wall.png: the picture has 41 × 30 pixels"):
+        open_set(folder)

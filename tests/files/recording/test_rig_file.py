@@ -10,6 +10,7 @@ from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.recording.rig import (
     GaugeSpec,
+    KnownPlaneTarget,
     ReferenceTarget,
     Rig,
     RigTables,
@@ -23,7 +24,7 @@ from core.files.recording.rig import (
     rig_tables,
     rig_to_toml,
 )
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.model.certificate import Certificate
 
@@ -260,10 +261,12 @@ def test_a_table_given_as_a_number(tmp_path):
 def test_each_step_wants_its_own_tables_only(tmp_path):
     camera_only = GOOD.partition("[plane_target]")[0]
     rig = read(tmp_path, camera_only)
-    assert rig.unstated == {"plane_target", "laser_fan"}
+    assert rig.unstated == {"plane_target"}
     require_tables(rig, tmp_path / "rig.toml", "camera_target")
     with pytest.raises(InputError, match=r"plane_target is missing; it must be a table \[plane_target\]"):
         require_tables(rig, tmp_path / "rig.toml", "plane_target", "laser_fan")
+    with pytest.raises(InputError, match=r"it has no table \[laser_fan\], which states that the rig has no fan"):
+        require_tables(rig, tmp_path / "rig.toml", "laser_fan")
     assert read(tmp_path, rig_to_toml(rig)) == rig
 
 
@@ -413,3 +416,72 @@ def test_figures_for_each_kelvin_and_hour_may_stand_alone(tmp_path):
     assert rig.drift.per_kelvin.turn == pytest.approx(40e-6) and not rig.drift.per_hour.turn
     path.write_text(rig_to_toml(rig))
     assert read_rig(path) == rig
+
+
+WITHOUT_FAN = """
+[camera_target]
+kind = "checkerboard"
+inner_corners = [17, 12]
+square_mm = 10.0
+
+[known_planes.wall]
+kind = "rectangle"
+size_mm = [250, 150.0]
+line_mm = 10
+corners_px = [[1, 2], [300.5, 2], [300, 100], [2, 100]]
+scale_sd = 1e-3
+
+[known_planes.floor-2]
+kind = "charuco"
+squares = [9, 7]
+square_mm = 20
+marker_mm = 15
+dictionary = "DICT_4X4_100"
+first_id = 32
+flatness_mm = 0.3
+margin_mm = 12
+print_of = "wall"
+region_px = [[0, 120], [400, 120], [400, 300]]
+celsius = 21
+u_celsius = 1
+certificate = "K 7"
+"""
+
+
+def test_known_planes_are_read_and_written_and_no_fan_is_a_statement(tmp_path):
+    rig = read(tmp_path, WITHOUT_FAN)
+    assert not rig.has_fan and rig.lines == 0
+    wall, floor = rig.known_planes["wall"], rig.known_planes["floor-2"]
+    corners = ((1.0, 2.0), (300.5, 2.0), (300.0, 100.0), (2.0, 100.0))
+    assert wall == KnownPlaneTarget(Rectangle(250.0, 150.0, 10.0, corners), BoardTolerance(None, 1e-3))
+    assert floor.target == Charuco(9, 7, 20.0, 15.0, "DICT_4X4_100", 32)
+    assert (floor.board, floor.margin_mm, floor.print_of) == (BoardTolerance(0.3, None), 12.0, "wall")
+    assert floor.region_px == ((0.0, 120.0), (400.0, 120.0), (400.0, 300.0))
+    assert floor.temperature.celsius == 21 and floor.certificate == Certificate("K 7")
+    assert written(tmp_path, rig) == rig
+    text = rig_to_toml(rig)
+    assert "[known_planes.wall]" in text and "laser_fan" not in text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"rectangle"', '"circle"', ['known_planes.wall.kind is "circle"', "rectangle"]),
+        ("size_mm = [250, 150.0]", "size_mm = 250", ["known_planes.wall.size_mm is 250", "[width, height]"]),
+        ("size_mm = [250, 150.0]", "size_mm = [0.25, 150.0]", ["known_planes.wall.size_mm is 0.25", "in mm"]),
+        ("size_mm = [250, 150.0]\n", "", ["known_planes.wall.size_mm is missing"]),
+        ("line_mm = 10", "line_mm = 90", ["known_planes.wall: line_mm", "half of the shorter side"]),
+        (", [2, 100]]", "]", ["known_planes.wall.corners_px", "four [u, v]"]),
+        ("corners_px", "corner_px", ["known_planes.wall.corner_px is an unknown key", "corners_px"]),
+        ('print_of = "wall"', 'print_of = "door"', ["known_planes.floor-2.print_of is door", "plane_target"]),
+        ("scale_sd = 1e-3", 'print_of = "floor-2"', ["known_planes.wall.print_of is floor-2"]),
+        ("first_id = 32", "first_id = -1", ["known_planes.floor-2.first_id is -1"]),
+        ("region_px = [[0, 120], ", "region_px = [", ["known_planes.floor-2.region_px", "three or more"]),
+        ("[known_planes.wall]", '[known_planes."the wall"]', ['known_planes has a table "the wall"', "a name of"]),
+    ],
+)
+def test_what_is_wrong_with_a_known_plane_is_said_by_table_and_field(tmp_path, old, new, said):
+    assert old in WITHOUT_FAN
+    sentence = complaint(tmp_path, WITHOUT_FAN.replace(old, new, 1))
+    for part in said:
+        assert part in sentence

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.board_shape import MADE, BoardTolerance
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle, Target
 from core.image.targets.kinds import DICTIONARIES, USUAL, USUAL_MARKER
 from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, Part, TargetTemperature
 from workbench.bench import Bench
@@ -50,6 +50,8 @@ def values_of(target: Target) -> dict[str, Any]:
             }
         case BlackSquare():
             return {"kind": "black_square", "size_mm": target.side_mm}
+        case Rectangle():
+            raise ValueError("no target of a calibration is a rectangle")
 
 
 def target_of(values: Mapping[str, Any]) -> Target:

@@ -56,7 +56,7 @@ class ImportDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         resize_on_screen(self, 1100, 720)
         self.camera, self.planes, self.planes_off = (QLineEdit() for _ in range(3))
-        self.scan, self.check, self.check_off = (QLineEdit() for _ in range(3))
+        self.scan, self.check, self.check_off, self.known_planes = (QLineEdit() for _ in range(4))
         self.target, self.order = QLineEdit(str(set_folder)), Choice()
         self.order.addItem(tr("By name (2 before 10)"), Order.NAME)
         self.order.addItem(tr("By the time they were taken"), Order.TIME)
@@ -83,6 +83,7 @@ class ImportDialog(QDialog):
         fields = {
             **{"camera": self.camera, "planes": self.planes, "planes_off": self.planes_off},
             **{"scan": self.scan, "check": self.check, "check_off": self.check_off},
+            "known_planes": self.known_planes,
         }
         asked: dict[str, Any] = {
             name: Where.typed(text) for name, one in fields.items() if (text := one.text().strip())
@@ -101,6 +102,7 @@ class ImportDialog(QDialog):
             (measurement, tr("Frames of a scan"), self.scan),
             (measurement, tr("Poses of the check, fan on"), self.check),
             (measurement, tr("The same poses, fan off"), self.check_off),
+            (measurement, tr("Boards beside the part"), self.known_planes),
         ):
             field.setPlaceholderText(tip)
             field.textChanged.connect(self._changed)

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from core.calibrate.fan.poses.stripe_lines import chunk_length, straight_lines
 from core.image.stripes.centreline import Centreline
 from core.image.targets import Target
-from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid
+from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle
 from core.image.targets.pose import homography_of, map_by
 from core.image.targets.target_view import TargetView
 from core.model import Camera
@@ -30,6 +30,8 @@ FAINTEST = 0.15
 laser. A fan's outer lines have a third of the middle one's light."""
 WIDTHS = (0.4, 2.5)
 """Of the width that most of the stripes have: least and most of a line of the same laser."""
+MARGIN_OF_RECTANGLE = 0.05
+"""Of a rectangle's shorter side: what paper leaves around one that nearly fills it, where its margin is not stated."""
 SPACING = 8
 """Px between the places at which the picture is asked where the plate is."""
 ROOM = 0.25
@@ -92,6 +94,8 @@ def _printed(target: Target) -> tuple[tuple[Array, Array], float]:
             beyond, cell = target.pitch_mm, target.pitch_mm
         case BlackSquare():
             beyond, cell = 0.0, target.side_mm
+        case Rectangle():
+            beyond, cell = 0.0, MARGIN_OF_RECTANGLE * min(target.width_mm, target.height_mm)
     return (low - beyond, high + beyond), cell
 
 

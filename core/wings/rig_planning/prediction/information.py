@@ -24,7 +24,7 @@ from core.calibrate.fan.poses.target_plane import target_plane_changes
 from core.image.stripes.noise import ROUNDING_VARIANCE, NoiseModel
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.stripes.stripe import PIXEL_VARIANCE
-from core.image.targets import BlackSquare, Target
+from core.image.targets import BlackSquare, Rectangle, Target
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
@@ -202,7 +202,7 @@ def _target_rows(sensing: Sensing, target: Target, pose: Pose, white_grey: float
     uv, by_camera, by_pose = linearise(sensing.camera, pose, target.points)
     grey = float(room_shade(pose, white_grey))
     density = edge_density(grey * (WHITE - BLACK), grey * BLACK, sensing.blur_px, sensing.noise)
-    if isinstance(target, BlackSquare):
+    if isinstance(target, BlackSquare | Rectangle):
         view = TargetView(target.points, uv, np.ones(len(uv)), covariance=square_covariance(uv, density))
     else:
         sigma = point_bound(target, density, sensing.camera.focal / float(pose.translation[2]))
