@@ -8,8 +8,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.errors import WrongValue
-from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.light_plane import LightPlane, angle_between
 
@@ -21,7 +19,7 @@ class Fan:
     Parameters
     ----------
     planes
-        N ≥ 1 planes.
+        N planes; none where there is no fan.
     covariance
         (3N, 3N) of the stacked π in 1/mm²; common to every point of a scan. Zero when it is not known.
     bends
@@ -35,8 +33,6 @@ class Fan:
 
     def __post_init__(self) -> None:
         set_field(self, "planes", tuple(self.planes))
-        if not self.planes:
-            raise WrongValue(Message("model.fan_without_planes", "a fan needs at least one plane"))
         size = 3 * len(self.planes)
         covariance = np.zeros((size, size)) if self.covariance is None else self.covariance
         set_field(self, "covariance", frozen_array(covariance, (size, size), "covariance"))
@@ -56,7 +52,7 @@ class Fan:
     @property
     def pis(self) -> Array:
         """Vectors π of all light planes, π·X = 1, (N, 3) in 1/mm."""
-        return np.array([plane.pi for plane in self.planes])
+        return np.array([plane.pi for plane in self.planes]).reshape(-1, 3)
 
     def pis_at(self, line: NDArray[np.int64], rays: Array) -> Array:
         """Compute π (M, 3) of planes through the light of each `line` (M,) where `rays` (M, 3) meet it, bent or not."""

@@ -32,7 +32,8 @@ class CrossingTable:
     a, b
         (M,) index of the frame of each; b is −1 for the fan.
     piece_a, piece_b
-        (M,) which centreline of that frame (of the reference, for the fan).
+        (M,) which centreline of that frame (of the reference, for the fan); −1 in place of the fan's for a point of a
+        sweep on a known plane: b is then any exact line there, square to a.
     along_a, along_b
         (M,) where on that centreline, as length along it from its first point, in pixels.
     half_length_px
@@ -86,6 +87,11 @@ class CrossingTable:
     def with_fan(self) -> NDArray[np.bool_]:
         """Mask (M,) of the crossings with the fan: b is the fan, not a later sweep."""
         return self.b < 0
+
+    @property
+    def on_plane(self) -> NDArray[np.bool_]:
+        """Mask (M,) of those of the fan's rows that are no crossings but points on a known plane."""
+        return (self.b < 0) & (self.piece_b < 0)
 
     def select(self, keep: NDArray[np.bool_] | Index) -> CrossingTable:
         """Select the crossings by a mask (M,), or by the numbers of their rows."""

@@ -22,6 +22,7 @@ from core.model.arrays import Array
 from core.model.robust import Schedule
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable, Index
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment, Solution
 from core.scan.network.fan_residuals import CellErrors
 from core.scan.network.geometry import CrossingRays
@@ -104,19 +105,20 @@ def solve_network(
     crossings: CrossingTable,
     geometry: CrossingRays,
     line: Index,
-    fan: Fan,
+    fan: Fan | Control,
     sweeps: int,
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> Network:
     """Adjust the planes of `sweeps` sweeps to all `crossings`; `line` (M,) is the fan's from 0, −1 between sweeps.
 
-    Where a `read_out` says that rows see different planes, these follow the hand.
+    With a `Control` there may be points on known planes among them, as of `Adjustment`. Where a `read_out` says that
+    rows see different planes, these follow the hand.
 
     Raises
     ------
     ValueError
-        If there is no crossing with the fan: nothing fixes the scale.
+        If there is no crossing with the fan and no point on a known plane: nothing fixes the scale.
     """
     equations = Adjustment(crossings, geometry, line, fan, sweeps, LineErrors.of(crossings), read_out)
     solution, silenced = solve_planes(equations, progress)
@@ -166,7 +168,9 @@ def _adjust(equations: Adjustment, progress: Progress, *, redescend: bool) -> So
 
 
 def _share_silenced(crossings: CrossingTable, weights: Array) -> float:
-    return float(np.mean(weights[crossings.with_fan] < SILENCED))
+    """Share of the crossings with the fan without weight; where there is no fan, of the points on known planes."""
+    fan = crossings.with_fan & ~crossings.on_plane
+    return float(np.mean(weights[fan if fan.any() else crossings.with_fan] < SILENCED))
 
 
 def has_collapsed(equations: Adjustment, pis: Array) -> bool:

@@ -47,6 +47,9 @@ _TILT_QUANTILES = [0.1, 0.9]
 _RIDGE = 1e-13
 """Added to the normal matrix relative to its trace: a direction that the crossings do not fix stays solvable."""
 
+ON_ONE_PLANE = 1e-3
+"""Share of the depth by which points are off one plane (RMS) at least, or they tell no more than a plane does."""
+
 MAIN_PLANE_MM = 1.0
 """Depth in mm within which a point lies on the main plane: above the noise of points, below the height of parts."""
 _TRIALS = 100
@@ -144,6 +147,18 @@ def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Ca
         relief_mm(rays[located], inverse_depths[located]),
         _tilt(crossings, len(pis)),
     )
+
+
+def free_directions(rays: Array, inverse_depths: Array) -> int:
+    """Count the directions of a sweep's plane that points at known `inverse_depths` (M,) on `rays` (M, 3) leave free.
+
+    Points of one plane leave one: all sweeps may be stretched away from it, π → s (π − τ) + τ.
+    """
+    if not len(rays):
+        return 3
+    places = np.column_stack([inverse_depths / np.median(inverse_depths), rays])
+    sizes = np.linalg.svd(places / np.sqrt(len(places)), compute_uv=False)
+    return min(3, 4 - int(np.count_nonzero(sizes > ON_ONE_PLANE)))
 
 
 def _tilt(crossings: CrossingTable, sweeps: int) -> float:

@@ -10,6 +10,9 @@ A crossing says (π_a − π_b)·r = gain_a·ε_a + gain_b·ε_b with ε the err
       x̂ = H⁻¹ Aᵀ W y,   cov = H⁻¹ (Aᵀ W V W A + P) H⁻¹,   H = Aᵀ W A + P
 
   with V the whole covariance of the crossings and P the prior's weight;
+- a point on a known plane (`core.scan.known_planes`) is a crossing with a line that is exact and lies square to a;
+  what is uncertain is the plane: three more unknowns with the prior N(0, 1). Its part of the covariance is left out
+  here, as that of the fan is: whoever displaces the planes sees it (`core.scan.common_errors`);
 - a plane that changes while rows are read out is linear in more than three numbers (`core.scan.network.read_out`);
 - the crossings' rays are noisy too, so the equations are taken at adjusted crossings (Gauss–Helmert).
 
@@ -34,6 +37,7 @@ from core.model.arrays import Array, set_field
 from core.model.positive_definite import inverse_by
 from core.model.robust import Schedule, Weigh, irls, mad_sd
 from core.scan.features.crossings import CrossingTable, Index
+from core.scan.known_planes.known_plane import FREEDOMS, Control
 from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.normal_matrix import normal_matrix
@@ -60,7 +64,7 @@ class Solution:
     pis
         (S, 3) in 1/mm, or (S, 3·(1 + K)) where rows are read one after another (`core.scan.network.read_out`).
     cells
-        (F,) errors of the fan's cells, in standard deviations.
+        (F + 3K,) errors of the fan's cells, in standard deviations, and of the K known planes.
     residuals
         (M,) of each crossing in standard deviations, observed − adjusted.
     weights
@@ -70,7 +74,7 @@ class Solution:
     sigma
         (M,) standard deviation of the misclosure without the fan's cells, in 1/mm.
     design
-        Derivatives (M, N) of the equations by the unknowns, N = 3·(1 + K)·S + F.
+        Derivatives (M, N) of the equations by the unknowns: those of the sweeps, then the `cells`.
     factor
         The Cholesky factor of H.
     motion
@@ -94,7 +98,7 @@ class Solution:
 
     @property
     def misfit(self) -> float:
-        """Sum of the weighted squares of all residuals, with those of the priors on fan's cells and hand's motion."""
+        """Sum of the weighted squares of all residuals, with those of the priors on cells, planes and hand's motion."""
         return float(self.weights @ self.residuals**2 + self.cells @ self.cells + self.motion)
 
 
@@ -102,28 +106,33 @@ class Solution:
 class Adjustment:
     """Equations of the `crossings` that the planes of `sweeps` sweeps have with each other and with the `fan`.
 
-    `line` (M,) is the fan's line from 0, −1 for crossings between sweeps.
+    `line` (M,) is the fan's line from 0, −1 for crossings between sweeps. With a `Control` in place of the fan, points
+    on its known planes are numbered after the fan's lines.
     """
 
     crossings: CrossingTable
     geometry: CrossingRays
     line: Index
-    fan: Fan
+    fan: Fan | Control
     sweeps: int
     errors: LineErrors
     read_out: ReadOut = AT_ONCE
     typical_gradient: float = field(init=False)
     """‖D‖ of a plane that differs from the fan's by as much as the fan's from none, in 1/(mm px)."""
     _fan_pis: Array = field(init=False)
+    _plane: Index = field(init=False)
+    _factors: Array = field(init=False)
     _motion: csr_array | None = field(init=False)
     _pattern: csr_array = field(init=False)
 
     def __post_init__(self) -> None:
         """Reckon what is the same in all rounds; `_pattern` says where the design's numbers stand."""
-        typical = np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1))
+        control = Control.of(self.fan)
         area = np.abs(np.linalg.det(self.geometry.jacobians)).mean() if len(self.crossings) else 0.0
-        set_field(self, "typical_gradient", float(typical * np.sqrt(area)))
-        set_field(self, "_fan_pis", self.fan.pis_at(np.maximum(self.line, 0), self.geometry.rays))
+        set_field(self, "typical_gradient", float(control.gradient * np.sqrt(area)))
+        set_field(self, "_fan_pis", control.pis_at(np.maximum(self.line, 0), self.geometry.rays))
+        set_field(self, "_plane", self.line[self.crossings.on_plane] - control.fan.lines)
+        set_field(self, "_factors", control.factors)
         set_field(self, "_motion", self.read_out.weight(self.sweeps) if self.read_out.moves else None)
         set_field(self, "_pattern", self._places())
 
@@ -131,6 +140,11 @@ class Adjustment:
     def unknowns(self) -> int:
         """Number of unknowns of all sweeps together, without the fan's cells."""
         return self.read_out.size * self.sweeps
+
+    @property
+    def before_planes(self) -> int:
+        """Number of unknowns of sweeps and fan's cells, after which those of the known planes come."""
+        return self.unknowns + self.errors.fan.shape[1]
 
     def start(self) -> Solution:
         """Solve the first round, without an earlier solution: every difference of planes counts as the typical one.
@@ -180,9 +194,15 @@ class Adjustment:
         return self._solve(weights, gains, adjusted, moved)
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
-        """Compute the planes' covariance (3S, 3S) from that of the crossings, and the `Solution.misfit` to expect."""
+        """Compute the planes' covariance (3S, 3S) from that of the crossings, and the `Solution.misfit` to expect.
+
+        What known planes add is not in it.
+        """
         middle, of_planes = self._middle(solution), solution.inverse[: self.unknowns]
         covariance = of_planes @ middle @ of_planes.T
+        if len(self._factors):
+            known = solution.inverse[: self.unknowns, self.before_planes :]
+            covariance -= known @ known.T  # by planes that are off, which is common to all points
         return np.asarray((covariance + covariance.T) / 2), self._expected(solution, middle)
 
     def expected(self, solution: Solution) -> float:
@@ -209,7 +229,7 @@ class Adjustment:
         x̂ − x = H⁻¹(Aᵀ W e − P x) for unknowns x with the prior P and noise e that is none of theirs, and z is one of
         them with P = 1: so it is minus the block of H⁻¹.
         """
-        return -solution.inverse[: self.unknowns, self.unknowns :]
+        return -solution.inverse[: self.unknowns, self.unknowns : self.before_planes]
 
     def shared_with_own_lines(self, solution: Solution) -> Array:
         """Compute the covariance (Q, 3) of each sweep's π̂ − π with the errors z of the Q cells of its own centrelines.
@@ -224,7 +244,7 @@ class Adjustment:
         return moved
 
     def noise(self, solution: Solution) -> csr_array:
-        """Make the matrix (M, …) from independent normal numbers of σ 1 to misclosures in 1/mm, fan's cells aside."""
+        """Make the matrix (M, …) from independent normal numbers of σ 1 to misclosures in 1/mm, cells aside."""
         return csr_array(hstack([self._shared(solution), diags_array(np.sqrt(self._rest(solution)))], format="csr"))
 
     def _shared(self, solution: Solution) -> csr_array:
@@ -253,9 +273,12 @@ class Adjustment:
         """Shift (M, 3) of each crossing's ray by the noise estimated in the last round."""
         table, errors = self.crossings, self.errors
         gain_a, gain_b = gains.T
-        of_fan = errors.fan @ before.cells
+        of_fan = errors.fan @ before.cells[: errors.fan.shape[1]]
         own_a, own_b = errors.sigma_a**2, np.where(table.with_fan, errors.rest_b, errors.sigma_b**2)
         misclosure = np.einsum("mi,mi->m", difference, self.geometry.rays) - gain_b * of_fan
+        if len(self._factors):
+            off = before.cells[errors.fan.shape[1] :].reshape(-1, FREEDOMS)[self._plane]
+            misclosure[table.on_plane] -= np.einsum("mi,mi->m", self._felt_of_planes(self.geometry.rays), off)
         per_variance = misclosure / self._sigma(gains) ** 2
         offset_a = _within(gain_a * own_a * per_variance, own_a)
         offset_b = _within(gain_b * own_b * per_variance, own_b) + of_fan
@@ -274,7 +297,8 @@ class Adjustment:
         """One weighted linear solution of (π_a − π_b)·`rays` + `moved` = noise."""
         sigma, forms = self._sigma(gains), self.read_out.forms(rays, self.crossings.uv[:, 1])
         between, of_fan = ~self.crossings.with_fan, -np.repeat(gains[:, 1], np.diff(self.errors.fan.indptr))
-        values = np.concatenate([forms.ravel(), -forms[between].ravel(), of_fan * self.errors.fan.data])
+        of_planes = -self._felt_of_planes(rays).ravel()
+        values = np.concatenate([forms.ravel(), -forms[between].ravel(), of_fan * self.errors.fan.data, of_planes])
         design = csr_array(
             (values[self._pattern.data], self._pattern.indices, self._pattern.indptr), self._pattern.shape
         )
@@ -291,14 +315,16 @@ class Adjustment:
         return Solution(pis, cells, residuals, weights, gains, sigma, design, factor, motion)
 
     def _places(self) -> csr_array:
-        """Where in the design (M, N) the forms of a, those of b and the shares of the fan's cells stand, from 0."""
+        """Where in the design (M, N) the forms of a, of b, the shares of cells and those of planes stand, from 0."""
         table, size, fan = self.crossings, self.read_out.size, self.errors.fan
-        between = np.flatnonzero(~table.with_fan)
+        between, on_plane = np.flatnonzero(~table.with_fan), np.flatnonzero(table.on_plane)
         every, numbers = np.arange(len(table)), np.arange(size)
         rows = [np.repeat(every, size), np.repeat(between, size), np.repeat(every, np.diff(fan.indptr))]
         of_a, of_b = size * table.a[:, None] + numbers, size * table.b[between, None] + numbers
-        columns = np.concatenate([of_a.ravel(), of_b.ravel(), self.unknowns + fan.indices])
-        shape = len(table), self.unknowns + fan.shape[1]
+        rows.append(np.repeat(on_plane, FREEDOMS))
+        of_planes = self.before_planes + FREEDOMS * self._plane[:, None] + np.arange(FREEDOMS)
+        columns = np.concatenate([of_a.ravel(), of_b.ravel(), self.unknowns + fan.indices, of_planes.ravel()])
+        shape = len(table), self.before_planes + FREEDOMS * len(self._factors)
         places = csr_array((np.arange(len(columns)), (np.concatenate(rows), columns)), shape=shape)
         places.sort_indices()
         return places
@@ -306,7 +332,13 @@ class Adjustment:
     def _prior(self) -> Array:
         """Weight of the prior on each unknown but the hand's motion."""
         of_sweep = np.repeat([1 / PRIOR_SD**2, 0.0], [3, self.read_out.size - 3])
-        return np.concatenate([np.tile(of_sweep, self.sweeps), np.ones(self.errors.fan.shape[1])])
+        others = self.errors.fan.shape[1] + FREEDOMS * len(self._factors)
+        return np.concatenate([np.tile(of_sweep, self.sweeps), np.ones(others)])
+
+    def _felt_of_planes(self, rays: Array) -> Array:
+        """(P, 3) how the errors of the known planes change the inverse depth of the P points on them, in 1/mm."""
+        there = rays[self.crossings.on_plane]
+        return np.asarray(np.einsum("mi,mij->mj", there, self._factors[self._plane]), dtype=np.float64)
 
     def _add_motion(self, matrix: Array) -> None:
         """Add the weight of the prior on the hand's motion to the upper left of `matrix`."""

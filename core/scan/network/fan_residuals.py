@@ -75,9 +75,10 @@ class CellErrors:
         rays = equations.geometry.rays[row]
         inverse = np.einsum("ni,ni->n", equations.read_out.planes(solution.pis[table.a[row]], table.uv[row, 1]), rays)
         depth = part * solution.gains[row, 1] / np.maximum(inverse, 1e-12) ** 2
-        covariance = np.eye(share.shape[1]) - solution.inverse[first:, first:]
+        last = equations.before_planes
+        covariance = np.eye(share.shape[1]) - solution.inverse[first:last, first:last]
         return cls(
-            solution.cells[crossed],
+            solution.cells[: share.shape[1]][crossed],
             covariance[np.ix_(crossed, crossed)],
             mean(table.uv[row])[crossed],
             mean(depth[:, None])[crossed, 0],

@@ -85,10 +85,12 @@ class LineErrors:
             ),
         )
         a, b = ends
-        count, of_fan = len(crossings), np.repeat(crossings.with_fan, b.shares.shape[1])
-        rows = np.concatenate([a.rows, b.rows[~of_fan]])
-        cells, fan_cells = np.concatenate([a.keys, b.keys[~of_fan]]), b.keys[of_fan]
-        shares = np.concatenate([a.shares.ravel(), b.shares.ravel()[~of_fan]])
+        count, width = len(crossings), b.shares.shape[1]
+        of_fan = np.repeat(crossings.with_fan & ~crossings.on_plane, width)
+        of_b = np.repeat(~crossings.with_fan, width)
+        rows = np.concatenate([a.rows, b.rows[of_b]])
+        cells, fan_cells = np.concatenate([a.keys, b.keys[of_b]]), b.keys[of_fan]
+        shares = np.concatenate([a.shares.ravel(), b.shares.ravel()[of_b]])
         of_a = np.arange(len(rows)) < len(a.rows)
         names, column = np.unique(cells, return_inverse=True)
 
@@ -99,12 +101,12 @@ class LineErrors:
         fan = csr_array((b.shares.ravel()[of_fan], (b.rows[of_fan], fan_column)), shape=(count, len(fan_names)))
         return cls(
             a.sigma,
-            b.sigma,
+            np.where(crossings.on_plane, 0.0, b.sigma),
             fan,
             matrix(of_a),
             matrix(~of_a),
             a.rest,
-            b.rest,
+            np.where(crossings.on_plane, 0.0, b.rest),
             fan_cells=_unnamed(fan_names)[:, 1:],
             sweep_cells=_unnamed(names),
         )

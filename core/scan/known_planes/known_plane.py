@@ -1,0 +1,130 @@
+"""Model of a known plane, and all that a scan is tied to: the fan's light planes and the known planes.
+
+A stripe point at ray r on a plane τ·X = 1 says π·r = τ·r of its sweep π, as a crossing with a light plane of the fan
+does. The plane's error is common to all points on it: τ = τ₀ + L z with LLᵀ its covariance and z three standard normal
+numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.camera.reprojection import parameters_of
+from core.model import Camera, Fan
+from core.model.arrays import Array, frozen_array, set_field
+
+FREEDOMS = 3
+"""Numbers that a plane's error has."""
+_CAMERA = 10
+"""Parameters of the camera."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class KnownPlane:
+    """Plane of a board in the scene, as the camera sees it: τ·X = 1 for points X on it, in the camera's frame.
+
+    Parameters
+    ----------
+    name
+        The board's.
+    pi
+        τ (3,) in 1/mm.
+    outline
+        (K, 2) corners in px of where it is seen.
+    of_pose, of_flatness
+        (3, 3) covariances of τ in 1/mm², by the noise of the board's points and by how flat it is. The camera counts
+        as known.
+    by_camera
+        (3, 10) derivative of τ by the camera's parameters: its pictures say something else with another camera.
+    marks
+        (H, W) True on what is printed on it, and some px around; None: nothing is.
+    scale_sd
+        Relative standard uncertainty of the board's size.
+    scale_assumed
+        Whether nobody has stated that.
+    print_of_target
+        Whether it was printed with the plane target, whose size error is its own, too.
+    pictures
+        How many pictures it was seen in.
+    rms_px
+        Of its points from where they should be.
+    """
+
+    name: str
+    pi: Array
+    outline: Array
+    of_pose: Array
+    of_flatness: Array
+    by_camera: Array
+    marks: NDArray[np.bool_] | None = None
+    scale_sd: float = 0.0
+    scale_assumed: bool = False
+    print_of_target: bool = True
+    pictures: int = 1
+    rms_px: float = float("nan")
+
+    def __post_init__(self) -> None:
+        shapes = (("pi", (3,)), ("outline", (None, 2)), ("of_pose", (3, 3)), ("of_flatness", (3, 3)))
+        for name, shape in (*shapes, ("by_camera", (3, _CAMERA))):
+            set_field(self, name, frozen_array(getattr(self, name), shape, name))
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance (3, 3) of τ in 1/mm², the camera and the board's size taken as known."""
+        return np.asarray(self.of_pose + self.of_flatness)
+
+    @property
+    def factor(self) -> Array:
+        """L (3, 3) with LLᵀ the covariance, of full rank."""
+        values, vectors = np.linalg.eigh(self.covariance)
+        return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+
+    def displaced(self, change: Array) -> KnownPlane:
+        """Add a `change` (3,) in 1/mm to τ; how well it is known stays."""
+        return replace(self, pi=self.pi + change)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Control:
+    """What the sweeps of a scan are tied to: the light planes of the fan, and known planes, numbered after its lines.
+
+    A fan without lines: there is none.
+    """
+
+    fan: Fan
+    planes: tuple[KnownPlane, ...] = ()
+
+    @classmethod
+    def of(cls, known: Fan | Control) -> Control:
+        """Make the control that a fan alone is; one that is made already stays."""
+        return known if isinstance(known, Control) else cls(known)
+
+    @property
+    def factors(self) -> Array:
+        """Factors L (K, 3, 3) of the covariances of the known planes."""
+        return np.array([plane.factor for plane in self.planes]).reshape(-1, FREEDOMS, FREEDOMS)
+
+    @property
+    def gradient(self) -> float:
+        """Typical length in 1/mm of how light planes change the inverse depth across a picture."""
+        if self.fan.lines:
+            return float(np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1)))
+        return float(np.median([np.linalg.norm(plane.pi) for plane in self.planes]))
+
+    def pis_at(self, line: NDArray[np.int64], rays: Array) -> Array:
+        """Compute the planes (M, 3) in 1/mm of each `line` (M,) where `rays` (M, 3) meet them."""
+        if not self.planes:
+            return self.fan.pis_at(line, rays)
+        on_plane = line >= self.fan.lines
+        pis = np.empty((len(line), 3))
+        pis[~on_plane] = self.fan.pis_at(line[~on_plane], rays[~on_plane])
+        pis[on_plane] = np.array([plane.pi for plane in self.planes])[line[on_plane] - self.fan.lines]
+        return pis
+
+    def behind(self, camera: Camera, other: Camera) -> tuple[KnownPlane, ...]:
+        """Compute the known planes that their pictures would give with an `other` camera in place of `camera`."""
+        change = parameters_of(other) - parameters_of(camera)
+        return tuple(plane.displaced(plane.by_camera @ change) for plane in self.planes)

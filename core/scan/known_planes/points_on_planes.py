@@ -1,0 +1,183 @@
+"""Points of the sweeps on known planes, as rows of the table of crossings: one for each cell of a centreline.
+
+On a plane a sheet of light draws one straight line (with the lens's distortion taken off). So of each frame and plane
+those cells are taken that lie on one line, the one that most of them lie on: a part that stands before the board draws
+another beside it. What is printed on the board is left out, and a few px at its edges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
+from core.model import Camera
+from core.model.arrays import Array
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.straightening import bent_back, straightened
+from core.scan.known_planes.known_plane import KnownPlane
+
+FROM_EDGES_PX = 4.0
+"""Px from the outline within which nothing is taken, beside three standard deviations of the stripe."""
+LEAST_COVERED = 0.5
+"""Share of a cell that has to lie on the plane."""
+OFF_LINE_PX = 1.0
+"""Px beside the common line, and five standard uncertainties, beyond which a cell lies on something else."""
+LEAST_CELLS = 2
+"""Cells of a frame on a plane, at least: with one the line has no direction."""
+BESIDE = 1.5
+"""Stripe σ on either side at which the board has to be free of print as well."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Cell:
+    """Mean of a centreline's points in one cell on a plane, in px freed of distortion; `sigma` in px across it."""
+
+    plane: int
+    frame: int
+    piece: int
+    number: int
+    along: float
+    u: float
+    v: float
+    normal: tuple[float, float]
+    sigma: float
+
+
+def points_on_planes(
+    features: ScanFeatures, planes: Sequence[KnownPlane], camera: Camera
+) -> tuple[CrossingTable, Index]:
+    """Collect the sweeps' points on the known `planes` as P rows of a table of crossings, and the plane (P,) of each.
+
+    `camera` takes the distortion off.
+    """
+    cell_px, width = features.crossings.half_length_px, features.crossings.share_b.shape[1]
+    usable = [_usable(plane, features.image_size) for plane in planes]
+    cells = [
+        cell
+        for frame in features.frames
+        for piece, line in enumerate(frame.centrelines)
+        for plane, free in enumerate(usable)
+        for cell in _cells(plane, frame.index, piece, line, free, camera, cell_px)
+    ]
+    cells.sort(key=lambda cell: (cell.plane, cell.frame, cell.piece, cell.number))
+    kept: list[tuple[_Cell, Array]] = []
+    for _, group in groupby(cells, key=lambda cell: (cell.plane, cell.frame)):
+        kept.extend(_on_one_line(list(group)))
+    return bent_back(_table(kept, cell_px, width), camera), np.array([c.plane for c, _ in kept], dtype=np.int64)
+
+
+def _usable(plane: KnownPlane, image_size: tuple[int, int]) -> NDArray[np.bool_]:
+    """(H, W) True inside the outline but not at its edges, and off what is printed."""
+    inside = np.zeros(image_size[::-1], dtype=np.uint8)
+    cv2.fillPoly(inside, [np.rint(plane.outline).astype(np.int32)], 1)
+    if plane.marks is not None:
+        inside[plane.marks] = 0
+    return inside > 0
+
+
+def _cells(
+    plane: int,
+    frame: int,
+    piece: int,
+    line: Centreline,
+    free: NDArray[np.bool_],
+    camera: Camera,
+    cell_px: float,
+) -> list[_Cell]:
+    """The cells of one centreline that lie on one plane."""
+    if len(line) < 2:
+        return []
+    near = free[_pixel(line.uv[:, 1], free.shape[0]), _pixel(line.uv[:, 0], free.shape[1])]
+    if not near.any():
+        return []
+    reach = np.maximum(BESIDE * line.width, FROM_EDGES_PX + 3 * line.width)[:, None]
+    on = near & ~line.saturated
+    for places in (
+        *(line.uv + sign * BESIDE * line.width[:, None] * line.normal for sign in (-1, 1)),
+        *(line.uv + sign * reach * way for sign in (-1, 1) for way in (line.normal, line.tangent)),
+    ):
+        on &= free[_pixel(places[:, 1], free.shape[0]), _pixel(places[:, 0], free.shape[1])]
+    if not on.any():
+        return []
+    straight = straightened((line,), camera)[0]
+    arc = arc_length(straight.uv)
+    number = np.floor(arc / cell_px).astype(np.int64)
+    step = np.gradient(arc)
+    found = []
+    for k in np.unique(number[on]):
+        mine = on & (number == k)
+        covered = float(step[mine].sum())
+        if covered < LEAST_COVERED * cell_px:
+            continue
+        u, v = straight.uv[mine].mean(axis=0)
+        sigma = float(np.median(straight.sigma[mine])) * np.sqrt(straight.correlation_px / covered)
+        across = straight.normal[mine].mean(axis=0)
+        n = (float(across[0]), float(across[1]))
+        found.append(_Cell(plane, frame, piece, int(k), float(arc[mine].mean()), float(u), float(v), n, sigma))
+    return found
+
+
+def _on_one_line(cells: list[_Cell]) -> list[tuple[_Cell, Array]]:
+    """Those cells that lie on the line that most of them lie on, and its unit tangent (2,) the way each runs."""
+    if len(cells) < LEAST_CELLS:
+        return []
+    uv, sigma = np.array([(c.u, c.v) for c in cells]), np.array([c.sigma for c in cells])
+    first, second = np.triu_indices(len(cells), 1)
+    way = uv[second] - uv[first]
+    length = np.linalg.norm(way, axis=1)
+    normal = np.column_stack([way[:, 1], -way[:, 0]]) / np.maximum(length, 1e-9)[:, None]
+    off = np.abs(np.einsum("pi,pci->pc", normal, uv[None] - uv[first][:, None]))
+    close = off < OFF_LINE_PX + 5 * sigma
+    best = int(np.argmax(close.sum(axis=1) - 1e-6 * np.where(close, off, 0.0).sum(axis=1) + 1e-9 * length))
+    mine = np.flatnonzero(close[best])
+    if len(mine) < LEAST_CELLS:
+        return []
+    weight = 1 / sigma[mine] ** 2
+    middle = np.average(uv[mine], axis=0, weights=weight)
+    spread = (uv[mine] - middle) * np.sqrt(weight)[:, None]
+    tangent = np.linalg.svd(spread, full_matrices=False)[2][0]
+    kept = []
+    for k in mine:
+        sign = np.sign(-cells[k].normal[1] * tangent[0] + cells[k].normal[0] * tangent[1]) or 1.0
+        kept.append((cells[k], sign * tangent))
+    return kept
+
+
+def _table(rows: Sequence[tuple[_Cell, Array]], cell_px: float, width: int) -> CrossingTable:
+    """The cells as rows, with shares `width` wide, the first of them that of the cell itself."""
+    count, cells = len(rows), [cell for cell, _ in rows]
+    tangent = np.array([way for _, way in rows]).reshape(-1, 2)
+    sigma, none = np.array([cell.sigma for cell in cells]), np.zeros(count, dtype=np.int64)
+    share = np.zeros((count, width))
+    share[:, :1] = sigma[:, None]
+    number = np.array([cell.number for cell in cells], dtype=np.int64)
+    return CrossingTable(
+        uv=np.array([(cell.u, cell.v) for cell in cells]).reshape(-1, 2),
+        tangent_a=tangent,
+        tangent_b=np.column_stack([tangent[:, 1], -tangent[:, 0]]),
+        sigma_a=sigma,
+        sigma_b=np.zeros(count),
+        a=np.array([cell.frame for cell in cells], dtype=np.int64),
+        b=none - 1,
+        piece_a=np.array([cell.piece for cell in cells], dtype=np.int64),
+        piece_b=none - 1,
+        along_a=np.array([cell.along for cell in cells]),
+        along_b=np.zeros(count),
+        half_length_px=cell_px,
+        cell_a=number,
+        cell_b=none,
+        share_a=share,
+        share_b=np.zeros((count, width)),
+    )
+
+
+def _pixel(values: Array, size: int) -> NDArray[np.intp]:
+    return np.asarray(np.rint(values), dtype=np.intp).clip(0, size - 1)
