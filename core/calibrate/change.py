@@ -256,12 +256,13 @@ def judge(
     stated: Stability | None,
     charted: RigSpread | None = None,
     assumed: Stability = DEFAULT_STABILITY,
+    planes: Array | None = None,
 ) -> Change:
     """Estimate what has changed of a rig since its calibration, from the normal equations `evidence` of its pictures.
 
     The K `deviations` are first those of the calibrations, then the nine `changes`. `camera` and `fan` are those
-    calibrated. The stability is that by the rig's checks, `charted`, where they say it; else that `stated`, else that
-    `assumed`; what change adds says so.
+    calibrated, `planes` (P, 3) the known planes of a scan, if the deviations hold them. The stability is that by the
+    rig's checks, `charted`, where they say it; else that `stated`, else that `assumed`; what change adds says so.
     """
     stability, source_of_change = stability_in_use(stated, charted, assumed)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
@@ -275,10 +276,11 @@ def judge(
         )
     x, estimate, root = _lasting(deviations, evidence, stability)
     free = [one for one, there in zip(deviations, x, strict=True) if there]
-    steps = np.array([_vector(one.camera, one.fan) for one in free]) - _vector(camera, fan)
+    here = Deviation("camera", camera, fan, np.zeros((0, 3)) if planes is None else planes)
+    steps = np.array([_vector(one) for one in free]) - _vector(here)
     sources = [source_of_change if one.source == "change" else one.source for one in free] + [source_of_change]
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
-    told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
+    told = (_displaced(here, source, step) for source, step in zip(sources, displaced, strict=True))
     return Change((*told, *bent), p, times, spread=charted, stability=stability)
 
 
@@ -311,13 +313,15 @@ def _lasting(
     return x, estimate, root
 
 
-def _displaced(camera: Camera, fan: Fan, source: Source, step: Array) -> Deviation:
-    """Camera and fan displaced by a step of their parameters."""
-    here = parameters_of(camera)
+def _displaced(here: Deviation, source: Source, step: Array) -> Deviation:
+    """Camera, fan and known planes displaced by a step of their parameters."""
+    parameters, lines = parameters_of(here.camera), 3 * here.fan.lines
+    of_camera, of_fan, of_planes = np.split(step, [len(parameters), len(parameters) + lines])
     return Deviation(
         source,
-        camera_of(here + step[: len(here)], camera.image_size),
-        moved_fan(fan, step[len(here) :]),
+        camera_of(parameters + of_camera, here.camera.image_size),
+        moved_fan(here.fan, of_fan),
+        here.planes + of_planes.reshape(-1, 3),
     )
 
 
@@ -338,8 +342,8 @@ def _by_chance(squares: float, freedom: int) -> float:
     return float(chdtrc(freedom, squares)) if freedom else 1.0
 
 
-def _vector(camera: Camera, fan: Fan) -> Array:
-    return np.concatenate([parameters_of(camera), fan.pis.ravel()])
+def _vector(one: Deviation) -> Array:
+    return np.concatenate([parameters_of(one.camera), one.fan.pis.ravel(), one.planes.ravel()])
 
 
 def laser_of(fan: Fan) -> Array:

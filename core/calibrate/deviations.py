@@ -12,7 +12,7 @@ JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (corre
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
 import numpy as np
@@ -26,6 +26,7 @@ from core.model.arrays import Array
 Source = Literal[
     "camera", "fan", "assumed fan", "bend", "scale", "assumed scale",
     "change", "assumed change", "charted change", "readjusted", "skewed fan",
+    "known pose", "known flatness", "assumed known flatness", "known size", "assumed known size",
 ]  # fmt: skip
 FANS: tuple[Source, ...] = ("fan", "assumed fan")
 """The sources that are the fan's calibration."""
@@ -35,7 +36,10 @@ UNEXPLAINED: Source = "bend"
 """The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
 LAWLESS: tuple[Source, ...] = (UNEXPLAINED, "skewed fan")
 """The sources of errors whose law is only a bound: a fit must not take them out."""
-UNMEASURED: tuple[Source, ...] = ("change", "assumed change", "charted change", *SCALES)
+UNMEASURED: tuple[Source, ...] = (
+    "change", "assumed change", "charted change", *SCALES,
+    "known flatness", "assumed known flatness", "known size", "assumed known size",
+)  # fmt: skip
 """The sources of errors whose size is stated or assumed: nothing in this calibration has measured it."""
 
 NEGLIGIBLE = 1e-12
@@ -50,14 +54,17 @@ class Deviation:
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
     "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`),
     "readjusted" (what a re-adjustment leaves uncertain of that), "skewed fan" (its stripes have another section in the
-    scan, `core.scan.changed_section`). Where
+    scan, `core.scan.changed_section`), or that of known planes (`core.scan.known_planes`): their "known pose" by the
+    noise of their points, "known flatness", and "known size" where they are no print of the plane target's. Where
     nobody has stated how large scale or change may be, or how flat the plane target is, on which the fan rests,
     their sources say that they are assumed, or that the change is by the rig's own checks ("charted change").
+    `planes` (K, 3) in 1/mm are the known planes of a scan then; none where it has none, or they stay.
     """
 
     source: Source
     camera: Camera
     fan: Fan
+    planes: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tuple[Deviation, ...]:

@@ -19,6 +19,7 @@ from core.progress import Progress, silent
 from core.scan.features.bent_crossings import BentLine, crossed_again
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.straightening import straightened
+from core.scan.known_planes.known_plane import KnownPlane
 from core.scan.method import Method, ReconstructOptions
 from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
@@ -46,23 +47,24 @@ def reconstruct_twice(
     fan: Fan,
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
+    planes: Sequence[KnownPlane] = (),
 ) -> tuple[ScanFeatures, ScanResult]:
     """Solve the scan and, if its surface bends, again with corrected features; return those last used and the result.
 
-    By the paper's method it is solved once, as the paper does.
+    The network ties the sweeps to known `planes` as well. By the paper's method it is solved once, as the paper does.
 
     Raises
     ------
     InputError
         As `core.scan.reconstruct.reconstruct`.
     """
-    first = reconstruct(features, camera, fan, options, progress)
+    first = reconstruct(features, camera, fan, options, progress, planes=planes)
     if options is not None and options.method != Method.NETWORK:
         return features, first
     corrected = corrected_for_bends(features, first, camera, fan)
     if corrected is features:
         return features, first
-    return corrected, reconstruct(corrected, camera, fan, options, progress, first.fan_lines)
+    return corrected, reconstruct(corrected, camera, fan, options, progress, first.fan_lines, planes)
 
 
 def corrected_for_bends(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan) -> ScanFeatures:

@@ -53,6 +53,7 @@ from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts, possible_movements
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import BY_CHANCE, Cause, Causes, Suspect
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT, has_collapsed
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
@@ -61,7 +62,7 @@ from core.scan.network.read_out import AT_ONCE, ReadOut, row_forms
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import change_of_misclosures
 from core.scan.standstill import LEAST_SEEN_SHARE, movements_of
-from core.scan.sweeps.locate import by_sweep, numbered, some_sweeps, sweeping_frames
+from core.scan.sweeps.locate import by_sweep, some_sweeps, sweeping_frames
 
 WEIGHTS = Schedule(5, huber_at=HUBER_AT)
 """Of reweighting, as before the test for a movement."""
@@ -115,7 +116,7 @@ def compare_causes(
     features: ScanFeatures,
     scan: ScanResult,
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     of_calibration: Sequence[Deviation] = (),
     of_rig: Sequence[Deviation] = (),
 ) -> Causes:
@@ -128,7 +129,7 @@ def compare_causes(
     features, scan
         What the pictures showed, and its solution by the network with `camera` and `fan`.
     camera, fan
-        As calibrated; the `fan` with the bends of its lines, if they were seen to bend.
+        As calibrated; the `fan`, or that of a control, with the bends of its lines, if they were seen to bend.
     of_calibration
         What the calibrations leave uncertain, one standard uncertainty each.
     of_rig
@@ -136,11 +137,11 @@ def compare_causes(
     """
     if scan.collapsed:
         return ()
-    crossings, line = numbered(features.crossings, scan.fan_lines)
-    some = some_sweeps(crossings)
-    crossings, line = crossings.select(some), line[some]
+    some = some_sweeps(scan.crossings)
+    crossings, line = scan.crossings.select(some), scan.crossing_lines[some]
     frames = sweeping_frames(crossings)
-    table, straight = by_sweep(crossings, frames), replace(fan, bends=None)
+    table, bent = by_sweep(crossings, frames), Control.of(fan)
+    straight = bent.with_fan(replace(bent.fan, bends=None))
     read_out = AT_ONCE if scan.rows_seen_to_roll else scan.read_out
     equations = Adjustment(
         table, CrossingRays.of(table, camera), line, straight, len(frames), LineErrors.of(table), read_out
@@ -157,7 +158,7 @@ def compare_causes(
         *_moved(equations, solution, movements, frames, seen),
         _drifted(equations, solution, frames, len(features.frames), seen),
         *_rig(equations, solution, of_rig, camera),
-        *_bent(equations, solution, fan),
+        *_bent(equations, solution, bent),
         *_hand(equations, scan.read_out if scan.rows_seen_to_roll else AT_ONCE),
         *_bounces(scan, crossings),
     ]
@@ -335,15 +336,18 @@ def _rig(
 
 
 def _of_deviation(equations: Adjustment, solution: Solution, one: Deviation, camera: Camera) -> Array:
-    return change_of_misclosures(equations, solution, one.fan, None if one.camera is camera else one.camera)
+    control = Control.of(equations.fan).displaced(one)
+    return change_of_misclosures(equations, solution, control, None if one.camera is camera else one.camera)
 
 
-def _bent(equations: Adjustment, solution: Solution, fan: Fan) -> Iterator[_Candidate]:
+def _bent(equations: Adjustment, solution: Solution, bent: Control) -> Iterator[_Candidate]:
     """Each of the fan's lines bends in the form that its calibration has seen, more or less."""
+    fan = bent.fan
     if fan.bends is None:
         return
     lines = np.eye(len(fan.bends))[:, :, None, None] * fan.bends
-    moves = [change_of_misclosures(equations, solution, replace(fan, bends=one)) for one in lines]
+    each = (bent.with_fan(replace(fan, bends=one)) for one in lines)
+    moves = [change_of_misclosures(equations, solution, one) for one in each]
     yield _Candidate(Suspect.BENT_LINES, np.array(moves).T)
 
 

@@ -21,12 +21,12 @@ from core.model.arrays import Array, frozen_array, set_field
 from core.model.fan import bent_pis
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.crossings import Index
-from core.scan.features.extraction import ScanFeatures
+from core.scan.known_planes.known_plane import Control
 from core.scan.method import Method
 from core.scan.network.read_out import row_planes
 from core.scan.results import ScanResult
 from core.scan.surface.cloud import FAN, Cloud
-from core.scan.sweeps.locate import locate_each, numbered, planes_together
+from core.scan.sweeps.locate import LocatedSweeps, SweepPlanes, locate_each, planes_together
 from core.stage_times import stage
 from core.threads import ordered_map
 
@@ -123,17 +123,16 @@ class CommonErrors:
 
 
 def solve_common(
-    features: ScanFeatures,
     scan: ScanResult,
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     deviations: Sequence[Deviation],
     method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> CommonErrors:
-    """Solve a scan again from the same features with each of the displaced calibrations `deviations`.
+    """Solve a scan again from the same crossings with each of the displaced calibrations `deviations`.
 
-    `camera` and `fan` are those it was solved with.
+    `camera` and `fan`, or a control, are those it was solved with.
 
     Raises
     ------
@@ -142,22 +141,25 @@ def solve_common(
     """
     reported = StepProgress(progress)
     reported("calibration uncertainty", 0, len(deviations))
-    solve = partial(planes_together, read_out=scan.read_out) if method == Method.NETWORK else locate_each
-    crossings, line = numbered(features.crossings, scan.fan_lines)
-    crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
-    sweeps = [scan.pis]
+    together = method == Method.NETWORK
+    crossings, line = scan.crossings.select(scan.of_solved), scan.crossing_lines[scan.of_solved]
+    control, sweeps = Control.of(fan), [scan.pis]
 
     def solved(one: Deviation) -> Array:
         with stage(progress, "calibration uncertainty"):
-            again = solve(crossings, line, one.camera, one.fan)
+            if together:
+                moved = control.displaced(one)
+                again: SweepPlanes | LocatedSweeps
+                again = planes_together(crossings, line, one.camera, moved, read_out=scan.read_out)
+            else:
+                again = locate_each(crossings, line, one.camera, one.fan)
         return np.asarray(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
 
     idle = partial(reported.within_step, "calibration uncertainty", 0, len(deviations))
     for pis in ordered_map(solved, deviations, idle=idle):
         sweeps.append(pis)
         reported("calibration uncertainty", len(sweeps) - 1, len(deviations))
-    of_fan = CommonErrors.of_fan(camera, fan, deviations)
-    return replace(of_fan, image_size=features.image_size, sweeps=np.array(sweeps))
+    return replace(CommonErrors.of_fan(camera, control.fan, deviations), sweeps=np.array(sweeps))
 
 
 def _bends(fan: Fan, deviations: Sequence[Deviation]) -> Array | None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from core.errors import InputError, OwnCause
 from core.findings.table import note_of
 from core.image.exclusion import MOVEMENTS
-from core.messages import Field, Message
+from core.messages import Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
@@ -28,8 +28,11 @@ from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
+from core.scan.known_planes.known_plane import Control, KnownPlane
+from core.scan.known_planes.points_on_planes import PlaneFit, points_on_planes
 from core.scan.method import Method, ReconstructOptions
-from core.scan.network.datum import Datum, datum_of, main_plane, note_on_datum, relief_mm
+from core.scan.network.adjustment import SILENCED
+from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
@@ -78,20 +81,31 @@ def reconstruct(
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
     fan_lines: FanLines | None = None,
+    planes: Sequence[KnownPlane] = (),
 ) -> ScanResult:
     """Locate the sweeps of a scan and triangulate its points; `fan_lines` is a numbering of the fan known before.
+
+    The network ties the sweeps to known `planes` as well; a fan without lines leaves these alone.
 
     Raises
     ------
     InputError
-        If no sweep crosses the fan, the sweeps' planes fall together over relief, or no point is left.
+        If no sweep crosses the fan and known planes do not suffice, the sweeps' planes fall together over relief, or no
+        point is left.
     """
     options = options or ReconstructOptions()
     progress = reported = StepProgress(progress)
     progress("network", 0, 3)
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
+    control = Control(fan, tuple(planes) if _together(options) else ())
+    if control.planes:
+        on_planes, of_plane = points_on_planes(features, control.planes, camera)
+        crossings = crossings.followed_by(on_planes)
+        line = np.concatenate([line, fan.lines + of_plane])
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
+    if not fan.lines:
+        _require_planes(crossings, line, control, camera)
     if not np.any(crossings.with_fan):
         raise _refused(
             too_bright,
@@ -111,11 +125,11 @@ def reconstruct(
     shares = partial(causes_of_light, features, watched.movements)
     bounces = NO_BOUNCES
     if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
-        bounces = find_second_bounces(features.frames, among, camera, fan)
+        bounces = find_second_bounces(features.frames, among, camera, control)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
     with cause_first(unrest, shares):
-        solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
+        solved = _solve(options, among, kept, camera, control, names, watched, reported.within_step)
         sweeps = solved.sweeps
         if sweeps.collapsed and not _flat(features, lines, camera, fan):
             raise _refused(too_bright, note_of("scan.collapsed_in_spite_of_relief"), TILT_MORE)
@@ -131,7 +145,9 @@ def reconstruct(
                 _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
                 LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
             )
-    records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
+    met = ~crossings.on_plane
+    of_met = crossings.select(met), line[met], reasons[met]
+    records = bounces.counted(frame_records(features, *of_met, sweeps.frames, cloud, camera))
     sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
     progress("network", 3, 3)
     return ScanResult(
@@ -165,7 +181,57 @@ def reconstruct(
         movements=merged_movements(watched.movements, solved.movements),
         rig_explained=None if solved.explanation is None else solved.explanation.share,
         rows_seen_to_roll=solved.read_out.moves and options.row_time_us is None,
+        crossing_lines=line,
+        planes=_plane_fits(control, crossings, line, solved, camera),
     )
+
+
+def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: Control, camera: Camera) -> None:
+    """InputError if known planes alone leave the sweeps' light planes free."""
+    on_plane = crossings.on_plane
+    rays = camera.rays(crossings.uv[on_plane])
+    pis = control.pis_at(line[on_plane], rays)
+    free = free_directions(rays, np.einsum("mi,mi->m", rays, pis))
+    if not free:
+        return
+    met = len(np.unique(line[on_plane]))
+    if not met:
+        what = Message(
+            "scan.no_known_plane",
+            "there is no fan, and no sweep is seen on a known plane, so nothing says where the hand-held laser was",
+        )
+        todo = Message(
+            "scan.advice_lay_boards",
+            "let each sweep cross two boards at an angle, with pictures of them in scan/planes, or use a fan",
+        )
+    else:
+        what = plural_message(
+            "scan.planes_leave_free",
+            "one plane leaves {free} of 3 directions of every sweep's light plane free",
+            "{n} planes that lie in one leave {free} of 3 directions of every sweep's light plane free",
+            n=met,
+            free=free,
+        )
+        todo = Message("scan.advice_second_plane", "add a second one at an angle, or the fan")
+    raise InputError(what, where="scan", todo=todo)
+
+
+def _plane_fits(
+    control: Control, crossings: CrossingTable, line: NDArray[np.int64], solved: _Solved, camera: Camera
+) -> tuple[PlaneFit, ...]:
+    """How the sweeps' points on each known plane agree with it."""
+    fits, frames = [], solved.sweeps.frames
+    located = crossings.on_plane & np.isin(crossings.a, frames)
+    for number, plane in enumerate(control.planes):
+        mine = np.flatnonzero(located & (line == control.fan.lines + number))
+        used = mine[solved.weights[mine] > SILENCED]
+        uv = crossings.uv[used]
+        rays, sweep = camera.rays(uv), np.searchsorted(frames, crossings.a[used])
+        inverse = np.einsum("mi,mi->m", rays, solved.read_out.planes(solved.sweeps.pis[sweep], uv[:, 1]))
+        off_mm = 1 / inverse - 1 / (rays @ plane.pi)
+        rms_mm = float(np.sqrt(np.mean(off_mm**2))) if len(used) else float("nan")
+        fits.append(PlaneFit(plane.name, len(used), len(np.unique(sweep)), len(mine) - len(used), rms_mm))
+    return tuple(fits)
 
 
 def _refused(too_bright: Message | None, what: Message, todo: Message) -> InputError:
@@ -242,7 +308,7 @@ def _solve(
     numbered_crossings: tuple[CrossingTable, NDArray[np.int64]],
     kept: NDArray[np.bool_],
     camera: Camera,
-    fan: Fan,
+    control: Control,
     names: Sequence[str],
     watched: FanRest,
     progress: Progress,
@@ -250,7 +316,7 @@ def _solve(
     crossings, line = numbered_crossings
     kept = kept.copy()
     if not _together(options):
-        sweeps = locate_each(crossings.select(kept), line[kept], camera, fan, progress)
+        sweeps = locate_each(crossings.select(kept), line[kept], camera, control.fan, progress)
         weights = np.zeros(len(crossings))
         weights[kept] = sweeps.weights
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
@@ -259,15 +325,15 @@ def _solve(
         moved = bool(watched.movements) if watched.known else None
         return _Solved(sweeps, weights, reasons, notes, moved=moved)
     among, of_among = crossings.select(kept), line[kept]
-    read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
+    read_out = read_out_of(among, of_among, camera, control, options.row_time_us, progress)
     explanation = None
     if read_out.shifts_mm and options.row_time_us is None:  # what another change of the rig does looks like that, too
-        explanation = explain_by_change(among, of_among, camera, fan, progress)
+        explanation = explain_by_change(among, of_among, camera, control, progress)
         read_out = AT_ONCE if explanation is not None else read_out
-    part = largest_rigid_interval(among, of_among, camera, fan, names, progress, read_out)
+    part = largest_rigid_interval(among, of_among, camera, control, names, progress, read_out)
     kept[kept] = part.kept
     among = crossings.select(kept)
-    sweeps = locate_together(among, line[kept], camera, fan, progress, read_out)
+    sweeps = locate_together(among, line[kept], camera, control, progress, read_out)
     weights = np.zeros(len(crossings))
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
@@ -275,7 +341,7 @@ def _solve(
     moved = bool(part.movements) and not watched.drifts  # a drift makes crossings disagree, too
     explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed
     if explanation is None and not explained and (sweeps.fan_silenced or sweeps.judged):
-        explanation = explain_by_change(among, line[kept], camera, fan, progress)
+        explanation = explain_by_change(among, line[kept], camera, control, progress)
     judged = sweeps.notes + (() if explained or sweeps.fan_silenced else sweeps.judged)
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(

@@ -12,6 +12,7 @@ from core.model.arrays import Array
 from core.scan.between_frames import Between
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameRecord
+from core.scan.known_planes.points_on_planes import PlaneFit
 from core.scan.network.datum import Datum
 from core.scan.network.fan_residuals import TIMES
 from core.scan.network.fan_speckle import FanSpeckle
@@ -75,6 +76,10 @@ class ScanResult:
         Share of what crossings are off too much that a single change of camera or fan explains; None if none does.
     rows_seen_to_roll
         Whether the crossings, and nothing that is stated, say that planes change with the rows.
+    crossing_lines
+        (M,) the fan's line of each crossing, from 0; −1 between sweeps; known planes are numbered after the lines.
+    planes
+        What the sweeps' points on each known plane say of it.
     """
 
     cloud: Cloud
@@ -101,6 +106,8 @@ class ScanResult:
     movements: tuple[Between, ...] = ()
     rig_explained: float | None = None
     rows_seen_to_roll: bool = False
+    crossing_lines: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    planes: tuple[PlaneFit, ...] = ()
 
     @property
     def needs_cause(self) -> bool:

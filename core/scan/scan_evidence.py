@@ -27,35 +27,35 @@ from core.calibrate.change import Evidence
 from core.calibrate.deviations import Deviation
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.scan.features.extraction import ScanFeatures
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
 from core.scan.results import ScanResult
-from core.scan.sweeps.locate import by_sweep, numbered
+from core.scan.sweeps.locate import by_sweep
 
 _ROUNDS = 2
 """Rounds of Gauss–Helmert, with the weights of the solution: the first moves the crossings, the second settles."""
 
 
-def scan_evidence(
-    features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan, deviations: Sequence[Deviation]
-) -> Evidence:
+def scan_evidence(scan: ScanResult, camera: Camera, fan: Fan | Control, deviations: Sequence[Deviation]) -> Evidence:
     """Compute from a scan's misclosures the normal equations for the sizes of K deviations of camera and fan.
 
-    `scan` is the solution of `features` by the network with `camera` and `fan`.
+    `scan` is the solution by the network with `camera` and `fan`, or with a control.
     """
-    crossings, line = numbered(features.crossings, scan.fan_lines)
-    table = by_sweep(crossings.select(scan.of_solved), scan.sweep_frames)
+    control, line = Control.of(fan), scan.crossing_lines
+    table = by_sweep(scan.crossings.select(scan.of_solved), scan.sweep_frames)
     geometry = CrossingRays.of(table, camera)
     errors, line = LineErrors.of(table), line[scan.of_solved]
-    equations = Adjustment(table, geometry, line, fan, len(scan.pis), errors, scan.read_out)
+    equations = Adjustment(table, geometry, line, control, len(scan.pis), errors, scan.read_out)
     solution = replace(equations.start(), pis=scan.pis)
     for _ in range(_ROUNDS):
         solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
     changes = np.array(
         [
-            change_of_misclosures(equations, solution, one.fan, one.camera if one.camera is not camera else None)
+            change_of_misclosures(
+                equations, solution, control.displaced(one), one.camera if one.camera is not camera else None
+            )
             for one in deviations
         ]
     ).T
@@ -68,13 +68,15 @@ def scan_evidence(
     return Evidence(changes.T @ felt, scatter, gradient)
 
 
-def change_of_misclosures(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
-    """Compute by how much (M,) in 1/mm misclosures change if `fan` and `camera` replace the calibrated ones.
+def change_of_misclosures(
+    equations: Adjustment, solution: Solution, control: Control, camera: Camera | None = None
+) -> Array:
+    """Compute by how much (M,) in 1/mm misclosures change if `control` and `camera` replace those of the equations.
 
     `camera` None: the calibrated one.
     """
     rays = equations.geometry.rays
     here = np.einsum("mi,mi->m", equations.differences(solution.pis), rays)
-    there = replace(equations, fan=fan).differences(solution.pis)
+    there = replace(equations, fan=control).differences(solution.pis)
     other = rays if camera is None else camera.rays(equations.crossings.uv)
     return np.asarray(here - np.einsum("mi,mi->m", there, other))

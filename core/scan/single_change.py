@@ -25,6 +25,7 @@ from core.model.arrays import Array
 from core.model.robust import Schedule
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT
 from core.scan.network.equations import Adjustment
 from core.scan.network.geometry import CrossingRays
@@ -133,7 +134,7 @@ class Explanation:
 
 
 def explain_by_change(
-    crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
+    crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan | Control, progress: Progress = silent
 ) -> Explanation | None:
     """Find the single changes of camera or fan that each explain why crossings disagree, the likeliest first.
 
@@ -144,7 +145,7 @@ def explain_by_change(
     crossings, line
         M crossings, and the fan's line (M,) of each, −1 between sweeps.
     camera, fan
-        As calibrated.
+        As calibrated; a control holds known planes as well.
     progress
         Called with how far each solution of the network is.
     """
@@ -158,7 +159,7 @@ def explain_by_change(
         return None
     enough = misfit - EXPLAINED * (misfit - 1)
     found: list[SingleChange] = []
-    for what, unknowns, changed in _changes(camera, fan):
+    for what, unknowns, changed in _changes(camera, Control.of(fan)):
         size_px, left = _least(partial(_misfit_of_change, calibrated, changed), unknowns, progress)
         size = size_px / camera.matrix[0, 0] if what in (Changed.FOCUS, Changed.FAN) else size_px
         found.append(SingleChange(what, size, left))
@@ -183,29 +184,43 @@ def _least(misfit: Callable[[Array], float], unknowns: int, progress: Progress) 
     return np.asarray(found.x), float(found.fun)
 
 
-def _changes(camera: Camera, fan: Fan) -> Iterator[tuple[Changed, int, Callable[[Array], tuple[Camera, Fan]]]]:
+def _changes(
+    camera: Camera, control: Control
+) -> Iterator[tuple[Changed, int, Callable[[Array], tuple[Camera, Control]]]]:
     """What may have changed, by how many numbers, and camera and fan changed by them.
 
     All numbers are in pixels: those of angles and of the focal length are divided by the focal length.
     """
-    here, pivot = parameters_of(camera), laser_of(fan)
+    here = parameters_of(camera)
 
-    def shifted(*places: int) -> Callable[[Array], tuple[Camera, Fan]]:
-        return lambda size: (camera_of(here + np.eye(len(here))[list(places)].T @ size, camera.image_size), fan)
+    def seen_by(parameters: Array) -> tuple[Camera, Control]:
+        other = camera_of(parameters, camera.image_size)
+        return other, control.behind(camera, other)
 
-    def focused(size: Array) -> tuple[Camera, Fan]:
-        return camera_of(here * np.where(np.arange(len(here)) < 2, 1 + size[0] / here[0], 1.0), camera.image_size), fan
+    def shifted(*places: int) -> Callable[[Array], tuple[Camera, Control]]:
+        return lambda size: seen_by(here + np.eye(len(here))[list(places)].T @ size)
+
+    def focused(size: Array) -> tuple[Camera, Control]:
+        return seen_by(here * np.where(np.arange(len(here)) < 2, 1 + size[0] / here[0], 1.0))
 
     yield Changed.PICTURE_ALONG_U, 1, shifted(3)
     yield Changed.PICTURE_ALONG_V, 1, shifted(4)
     yield Changed.PICTURE, 2, shifted(3, 4)
     yield Changed.FOCUS, 1, focused
-    yield Changed.FAN, 3, lambda size: (camera, displaced_fan(fan, size / here[0], pivot))
+    if control.fan.lines:
+        pivot = laser_of(control.fan)
+        yield (
+            Changed.FAN,
+            3,
+            lambda size: (camera, control.with_fan(displaced_fan(control.fan, size / here[0], pivot))),
+        )
 
 
-def _misfit_of_change(calibrated: Adjustment, changed: Callable[[Array], tuple[Camera, Fan]], size_px: Array) -> float:
-    camera, fan = changed(size_px)
-    return _misfit(replace(calibrated, geometry=CrossingRays.of(calibrated.crossings, camera), fan=fan))
+def _misfit_of_change(
+    calibrated: Adjustment, changed: Callable[[Array], tuple[Camera, Control]], size_px: Array
+) -> float:
+    camera, control = changed(size_px)
+    return _misfit(replace(calibrated, geometry=CrossingRays.of(calibrated.crossings, camera), fan=control))
 
 
 def _misfit(equations: Adjustment) -> float:

@@ -37,6 +37,7 @@ from core.model.robust import Schedule
 from core.progress import Progress, silent
 from core.scan.between_frames import Between, between
 from core.scan.features.crossings import CrossingTable, Index
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT
 from core.scan.network.datum import main_plane
 from core.scan.network.equations import Adjustment, Solution
@@ -83,7 +84,7 @@ class Movement:
 
 
 def find_movement(
-    crossings: CrossingTable, line: Index, camera: Camera, fan: Fan, read_out: ReadOut = AT_ONCE
+    crossings: CrossingTable, line: Index, camera: Camera, fan: Fan | Control, read_out: ReadOut = AT_ONCE
 ) -> Movement | None:
     """Find the most noticeable movement of part or rig during a scan; None where none shows.
 
@@ -217,7 +218,7 @@ def largest_rigid_interval(
     crossings: CrossingTable,
     line: Index,
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     names: Sequence[str],
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,

@@ -120,7 +120,7 @@ def _scans(index: int, seed: int, frames: int) -> Iterator[np.ndarray]:
     features = exact.measured(seed=int(rng.integers(2**31)))
     first = reconstruct(features, rig.camera, rig.fan, fan_lines=lines)
     displaced = [Deviation(source, *_off(rig.camera, rig.fan, step)) for source, step in steps]
-    template = solve_common(features, first, rig.camera, rig.fan, displaced)
+    template = solve_common(first, rig.camera, rig.fan, displaced)
     while True:
         draw = sum((rng.normal() * step for _, step in steps), np.zeros(19))
         camera, fan = _off(rig.camera, rig.fan, draw)

@@ -126,7 +126,7 @@ def _points(truth: Truth, features: ScanFeatures, calibration: Calibration) -> t
     camera, fan = calibration.camera.camera, calibration.fan.fan
     scan = reconstruct(features, camera, fan)
     deviations = calibration_deviations(calibration.camera, calibration.fan)
-    common = solve_common(features, scan, camera, fan, deviations)
+    common = solve_common(scan, camera, fan, deviations)
     cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
     return depth_errors(truth, cloud), np.hypot(cloud.sigma, cloud.sigma_common)
 

@@ -86,7 +86,7 @@ def measured(turn, drift_px: float, seed: int) -> dict[str, tuple[float, float, 
         shown = fan_scenes.features(list(where), fan_scenes.Noise(), seed, pis=rig.fan.pis, points=points)
         return check_poses(shown, camera, replace(calibrated_fan(), fan=fan), deviations)[1]
 
-    of_scan = scan_evidence(features, scan, camera, fan, deviations)
+    of_scan = scan_evidence(scan, camera, fan, deviations)
     cases = {
         "stable": (Evidence.none(len(deviations)), STABLE),
         "unchecked": (of_scan, DEFAULT_STABILITY),
@@ -97,7 +97,7 @@ def measured(turn, drift_px: float, seed: int) -> dict[str, tuple[float, float, 
     faces, found = find_faces(scan.cloud), {}
     for name, (evidence, stability) in cases.items():
         change = judge(camera, fan, deviations, evidence, stability)
-        common = solve_common(features, scan, camera, fan, change.deviations)
+        common = solve_common(scan, camera, fan, change.deviations)
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle)
         fit = fit_gauge(scan.cloud, errors=errors, regions=faces)
         found[name] = fit.thickness_mm - HEIGHT, 2 * combined(fit.budget), change.p

@@ -61,7 +61,7 @@ def said(exact: ExactScan, seed: int, camera: Camera, fan: Fan, steps: np.ndarra
     deviations += [Deviation("camera", longer(camera, FOCAL_SHARE), fan), *changes(camera, fan)]
     seen = measured(exact, seed)
     scan = reconstruct(seen, camera, fan, fan_lines=FanLines.settled_as(exact.fan_line))
-    return deviations, scan_evidence(seen, scan, camera, fan, deviations)
+    return deviations, scan_evidence(scan, camera, fan, deviations)
 
 
 def judged(exact: ExactScan, seed: int, camera: Camera, fan: Fan, steps: np.ndarray) -> Change:
@@ -115,7 +115,7 @@ def test_frames_that_left_the_scan_do_not_matter(exact, fan_steps):
     camera, fan = exact.rig.camera, exact.rig.fan
     scan = reconstruct(seen, camera, fan, fan_lines=FanLines.settled_as(exact.fan_line))
     fewer = replace(scan, pis=scan.pis[:-2], sweep_frames=scan.sweep_frames[:-2])
-    evidence = scan_evidence(seen, fewer, camera, fan, changes(camera, fan))
+    evidence = scan_evidence(fewer, camera, fan, changes(camera, fan))
     assert judge(camera, fan, changes(camera, fan), evidence, STABLE).times > 0
 
 
@@ -124,7 +124,5 @@ def test_a_scan_over_one_line_cannot_tell_whether_anything_moved(exact):
     lines = FanLines.settled_as([number if number == 1 else -1 for number in exact.fan_line])
     seen, camera, fan = measured(exact, 2), exact.rig.camera, exact.rig.fan
     scan = reconstruct(seen, camera, fan, fan_lines=lines)
-    change = judge(
-        camera, fan, changes(camera, fan), scan_evidence(seen, scan, camera, fan, changes(camera, fan)), STABLE
-    )
+    change = judge(camera, fan, changes(camera, fan), scan_evidence(scan, camera, fan, changes(camera, fan)), STABLE)
     assert (change.times, change.p, change.notes) == (0.0, 1.0, ())

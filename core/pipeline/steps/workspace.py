@@ -29,6 +29,7 @@ from core.held_files import remove, remove_tree, rename
 from core.memory import give_back
 from core.messages import Command, Message
 from core.model import Camera
+from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.results import FrameRecord
 
 _MADE_IN_ORDER = tuple(made for step in GRAPH for made in step.makes)
@@ -44,10 +45,16 @@ of the recording set alone: no result rests on it, nor it on any, and it is ther
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Calibration:
-    """Calibrated camera and fan that a scan is measured with, and the id of the two."""
+    """Calibrated camera and fan that a scan is measured with, the id of the two, and the known `planes` of the scan."""
 
     camera: CameraCalibration
     fan: FanCalibration
+    planes: tuple[KnownPlane, ...] = ()
+
+    @property
+    def control(self) -> Control:
+        """What the sweeps of a scan are tied to: fan and known planes."""
+        return Control(self.fan.fan, self.planes)
 
     @property
     def id(self) -> str:

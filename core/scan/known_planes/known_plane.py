@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.camera.reprojection import parameters_of
+from core.calibrate.deviations import Deviation
 from core.model import Camera, Fan
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -121,10 +122,28 @@ class Control:
         on_plane = line >= self.fan.lines
         pis = np.empty((len(line), 3))
         pis[~on_plane] = self.fan.pis_at(line[~on_plane], rays[~on_plane])
-        pis[on_plane] = np.array([plane.pi for plane in self.planes])[line[on_plane] - self.fan.lines]
+        pis[on_plane] = self.plane_pis[line[on_plane] - self.fan.lines]
         return pis
 
-    def behind(self, camera: Camera, other: Camera) -> tuple[KnownPlane, ...]:
-        """Compute the known planes that their pictures would give with an `other` camera in place of `camera`."""
+    @property
+    def plane_pis(self) -> Array:
+        """Vectors τ (K, 3) in 1/mm of the known planes."""
+        return np.array([plane.pi for plane in self.planes]).reshape(-1, 3)
+
+    def with_fan(self, fan: Fan) -> Control:
+        """Copy the control with another fan; the known planes stay."""
+        return replace(self, fan=fan)
+
+    def behind(self, camera: Camera, other: Camera) -> Control:
+        """Copy the control with the planes that their pictures would give with an `other` camera than `camera`."""
+        if not self.planes or other is camera:
+            return self
         change = parameters_of(other) - parameters_of(camera)
-        return tuple(plane.displaced(plane.by_camera @ change) for plane in self.planes)
+        return replace(self, planes=tuple(plane.displaced(plane.by_camera @ change) for plane in self.planes))
+
+    def displaced(self, one: Deviation) -> Control:
+        """Copy the control with fan and known planes as a deviation has them."""
+        if not len(one.planes):
+            return self.with_fan(one.fan)
+        moved = zip(self.planes, one.planes, strict=True)
+        return Control(one.fan, tuple(replace(plane, pi=pi) for plane, pi in moved))

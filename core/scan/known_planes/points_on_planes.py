@@ -37,6 +37,29 @@ BESIDE = 1.5
 
 
 @dataclass(frozen=True, slots=True)
+class PlaneFit:
+    """Agreement of the sweeps' points on a known plane with it.
+
+    Parameters
+    ----------
+    name
+        The board's.
+    points, frames
+        How many points count, and of how many frames.
+    left_out
+        How many do not, as they disagree.
+    rms_mm
+        Of their depths from the plane's.
+    """
+
+    name: str
+    points: int
+    frames: int
+    left_out: int
+    rms_mm: float
+
+
+@dataclass(frozen=True, slots=True)
 class _Cell:
     """Mean of a centreline's points in one cell on a plane, in px freed of distortion; `sigma` in px across it."""
 

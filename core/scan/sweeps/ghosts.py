@@ -35,6 +35,7 @@ from core.model.residuals import over_picture
 from core.model.robust import Schedule, mad_sd
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.frames import FrameFeatures, FrameRecord
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT, has_collapsed
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment
 from core.scan.network.geometry import CrossingRays, floored, noise_gains
@@ -91,7 +92,7 @@ NO_BOUNCES = SecondBounces()
 
 
 def find_second_bounces(
-    frames: Sequence[FrameFeatures], numbered_crossings: tuple[CrossingTable, Index], camera: Camera, fan: Fan
+    frames: Sequence[FrameFeatures], numbered_crossings: tuple[CrossingTable, Index], camera: Camera, fan: Fan | Control
 ) -> SecondBounces:
     """Find the pieces of the sweeps' centrelines that are second bounces: light mirrored by a shiny side.
 
@@ -169,7 +170,7 @@ def _of(pieces: Set[Piece], frame: Index, piece: Index) -> NDArray[np.bool_]:
 
 
 def _judged(
-    table: CrossingTable, line: Index, bright: CrossingTable, bright_line: Index, camera: Camera, fan: Fan
+    table: CrossingTable, line: Index, bright: CrossingTable, bright_line: Index, camera: Camera, fan: Fan | Control
 ) -> tuple[Array, NDArray[np.bool_]]:
     """By how many px (M,) a's line misses each crossing of `table`, and whether it does not although it well could.
 

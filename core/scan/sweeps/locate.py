@@ -17,6 +17,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import has_collapsed, solve_network, solve_planes
 from core.scan.network.equations import Adjustment
 from core.scan.network.fan_residuals import judge_network
@@ -173,7 +174,7 @@ def locate_together(
     crossings: CrossingTable,
     line: NDArray[np.int64],
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> LocatedSweeps:
@@ -217,7 +218,7 @@ def planes_together(
     crossings: CrossingTable,
     line: NDArray[np.int64],
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> SweepPlanes:

@@ -28,6 +28,7 @@ from core.model import Camera, Fan
 from core.model.robust import huber_weights
 from core.progress import Progress, silent
 from core.scan.features.crossings import CrossingTable, Index
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
@@ -49,7 +50,7 @@ def read_out_of(
     crossings: CrossingTable,
     line: Index,
     camera: Camera,
-    fan: Fan,
+    fan: Fan | Control,
     row_time_us: float | None,
     progress: Progress = silent,
 ) -> ReadOut:

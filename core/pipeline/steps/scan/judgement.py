@@ -39,9 +39,7 @@ class Solved:
 
     def evidence(self, deviations: Sequence[Deviation]) -> Evidence:
         """Compute what the scan's misclosures say about K deviations of camera and fan, as normal equations."""
-        return scan_evidence(
-            self.features, self.scan, self.calibration.camera.camera, self.calibration.fan.fan, deviations
-        )
+        return scan_evidence(self.scan, self.calibration.camera.camera, self.calibration.control, deviations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,10 +128,10 @@ def judged_scan(
     InputError
         If the scan cannot be solved with a displaced calibration.
     """
-    camera, fan = solved.calibration.camera.camera, solved.calibration.fan.fan
+    camera, control = solved.calibration.camera.camera, solved.calibration.control
     change = change_by(solved.evidence if method == Method.NETWORK else _nothing)
     deviations = (*change.deviations, *section.deviations)
-    common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
+    common = solve_common(solved.scan, camera, control, deviations, method, progress)
     causes = _causes(solved, change) if method == Method.NETWORK else ()
     facts = facts_of(of_the_day, change, section, solved.features.too_fine_for_mosaic, solved.scan)
     names = [frame.name for frame in solved.features.frames]

@@ -152,7 +152,7 @@ class Planner:
         features = self._features(design, height_mm, seed)
         scan = reconstruct(features, camera.camera, fan.fan, self.solving, told.within_step)
         deviations = self._deviations(design, seed, (camera, fan), features, scan)
-        common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.within_step)
+        common = solve_common(scan, camera.camera, fan.fan, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle, scan.pis.shape[1])
         gauge = measure_gauge(cloud, errors=errors, progress=told.within_step)
@@ -193,7 +193,7 @@ class Planner:
         if self.stability == STABLE:
             return deviations
         deviations = (*deviations, *changes(camera.camera, fan.fan))
-        evidence = scan_evidence(features, scan, camera.camera, fan.fan, deviations)
+        evidence = scan_evidence(scan, camera.camera, fan.fan, deviations)
         seen = plan_check(design, seed)
         if seen:
             evidence += check_poses(seen, camera.camera, fan, deviations)[1]
