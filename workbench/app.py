@@ -27,6 +27,7 @@ from core.held_files import PATIENCE_S
 from core.sources import brings_code
 from core.translations import PSEUDO, language, languages, preferred
 from workbench.language import choose, text_of, tr
+from workbench.no_display import told_without_display
 from workbench.settings import THEMES, AppSettings
 from workbench.theme import apply_colours, apply_sheet, take_sheet_off
 from workbench.views.splash import Splash
@@ -115,7 +116,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _associate(double_click.install if given.install_desktop else double_click.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
     PATIENCE_S.set(WINDOW_PATIENCE_S)
-    app = Application(sys.argv[:1])
+    by_surroundings = (os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
+    with told_without_display(lambda why: language(preferred((given.language, *by_surroundings)))(why)):
+        app = Application(sys.argv[:1])
     settings = AppSettings()
     apply_colours(app, given.theme or settings.theme)
     splash = Splash(app.windowIcon(), app.applicationDisplayName())
@@ -124,8 +127,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     log_file = log_to_file()
     bench = make_bench(settings)
-    wanted = (given.language, bench.settings.language, os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
-    choose(language(preferred(wanted)), app)
+    choose(language(preferred((given.language, bench.settings.language, *by_surroundings))), app)
     bench.notices.catch_everything()
     code_cache()  # of all its processes: they find here which one it is
     if (note := note_on_cache()) is not None:
