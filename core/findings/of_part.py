@@ -27,7 +27,7 @@ ROWS = (
     Finding("surface.faces_not_spanned", Weight.GRAVE, Effect.NO_PROOF,
             "The points of {name:and} lie on one stripe, or too near to each other for their noise: nothing says how "
             "it lies, or whether it is a face, and what is measured from it proves nothing. Scan it with more sweeps, "
-            "or raise the scan's σ cut if that leaves most of its points out.", fact="faces_not_spanned"),
+            "or, if it leaves most of its points out, raise the scan's σ cut{command}.", fact="faces_not_spanned"),
     Finding("form.scatter", Weight.CAUTION, Effect.WIDENS_U,
             "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts on "
             "them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise."),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from core.errors import InputError, OwnCause
 from core.findings.table import note_of
 from core.image.exclusion import MOVEMENTS
-from core.messages import Field, Message, plural_message
+from core.messages import Command, Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
@@ -68,8 +68,10 @@ TILT_MORE = Message(
 
 LOCATE_BETTER = Message(
     "scan.advice_locate_better",
-    "cross more of the fan with each sweep and tilt the laser between sweeps, check {field}, or raise the σ cut",
+    "cross more of the fan with each sweep and tilt the laser between sweeps, check {field}, or raise the σ "
+    "cut{command}",
     field=Field("laser_fan.lines"),
+    command=Command("--sigma-cut MM"),
 )
 AS_CALIBRATED = Message("scan.advice_as_calibrated", "scan again with the rig as it was at its calibration")
 

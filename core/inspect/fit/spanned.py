@@ -19,7 +19,7 @@ from scipy.linalg import eigh
 
 from core.findings.table import note_of
 from core.inspect.fit.shapes import Parts, Shape
-from core.messages import Message
+from core.messages import Command, Message
 from core.model.arrays import Array
 
 SPANNED_SIGMAS = 5.0
@@ -58,4 +58,4 @@ def spanned(shape: Shape, points: Array, sigma: Array, part: Parts) -> bool:
 
 def faces_not_spanned(names: Sequence[Message]) -> Message:
     """Make the note that results on the faces called `names` prove nothing, as their points fix no surface."""
-    return note_of("surface.faces_not_spanned", name=list(names))
+    return note_of("surface.faces_not_spanned", name=list(names), command=Command("--sigma-cut MM"))

@@ -23,7 +23,7 @@ from core.inspect.plan.temperature import correction_to_reference, temperature_o
 from core.inspect.results import GaugeResult
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.messages import Message, as_json
+from core.messages import Command, Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import checked_on_the_day
 from core.pipeline.steps.workspace import Workspace, check_calibration
@@ -239,7 +239,9 @@ def _unsure(scan: ScanFile) -> Iterator[Reason]:
         ),
         Message(
             "gauge.advice_surer_points",
-            "raise the scan's σ cut, cross more of the fan with each sweep, or take sharper or larger pictures",
+            "cross more of the fan with each sweep, take sharper or larger pictures, or raise the scan's σ "
+            "cut{command}",
+            command=Command("--sigma-cut MM"),
         ),
     )
 

@@ -75,7 +75,7 @@ def test_faces_that_are_not_found_are_told_with_the_points_that_are_too_unsure(s
     refused = str(told_first(scan_of(unsure_share=share), no_faces()))
     assert said in refused
     assert "no two are parallel" in refused
-    assert ("raise the scan's σ cut" in refused) == (share > 0.5)
+    assert ("raise the scan's σ cut: --sigma-cut MM" in refused) == (share > 0.5)
 
 
 def test_few_frames_are_named_before_points_that_are_too_unsure():
