@@ -207,14 +207,16 @@ def _why_not_loaded(name: str) -> Message | str:
 
 def note_on_no_wings() -> Message | None:
     """Note which names in the environment variable WITHOUT are of no wing; None where each is of one."""
-    there, declared = wings(), names_of_entry_points(GROUP) | names_of_entry_points(WINDOW_GROUP)
+    there, declared = wings(), names_of_entry_points(GROUP)
+    of_windows = names_of_entry_points(WINDOW_GROUP) - declared
     known = {*OUR_COMMANDS.values(), *(wing.name for wing in (*there, *there.away))}
-    if not (unknown := sorted(left_out() - known - declared)):
+    if not (unknown := sorted(left_out() - known - declared - of_windows)):
         return None
+    broken = {one.name for one in there.unusable}
     return Message(
         "plugin.no_such_wing",
         "{variable} names {unknown:and}, but the wings are {known:and}.",
         variable=WITHOUT,
         unknown=unknown,
-        known=sorted(known),
+        known=sorted(known | broken | of_windows),
     )

@@ -200,6 +200,14 @@ def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
     assert "TRISECT_WITHOUT_WINGS names plan, but the wings are greeting, rig_planning and studies." in said.err
 
 
+def test_wings_of_the_window_alone_and_broken_ones_are_among_the_names_that_are_listed(install, monkeypatch):
+    groups = {"trisect.window_wings": {"gauges": "lab_gauges:WING"}, "trisect.wings": {"broken": "lab_gauges:NONE"}}
+    install("lab-gauges", {"lab_gauges": ""}, groups)
+    monkeypatch.setenv(WITHOUT, "gouges")
+    look_again()
+    assert "names gouges, but the wings are broken, gauges, rig_planning and studies." in trisect("--help").err
+
+
 def test_the_name_of_an_entry_point_is_a_name_of_its_wing(install, monkeypatch):
     installed(install, "WING")
     monkeypatch.setenv(WITHOUT, "wing")

@@ -6,9 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from core.errors import WrongValue
 from core.files.complaints import Clash
 from core.files.recording.rig import Table
-from core.inspect.plan.kinds import KINDS, kind_named
+from core.inspect.plan.kinds import every_kind, kind_named
 from core.messages import Message, label
 
 # The description of a field ends the sentence "… is <value>, not <description>".
@@ -170,7 +171,7 @@ class FeatureTable(Table):
     """Table [[feature]]."""
 
     name: _Name = Field(description="a name of 1 to 80 characters")
-    kind: str = Field(description=f"{', '.join(kind.name for kind in KINDS[:-1])} or {KINDS[-1].name}")
+    kind: str = Field(description='a kind of feature, as "plane"')
     region: RegionTable | Literal["auto"] | None = Field(None, description='a table as { polygon_px = … }, or "auto"')
     regions: list[RegionTable | Literal["auto"]] | None = Field(
         None, max_length=20, description="a list of regions: upper and lower face, or levels"
@@ -190,7 +191,12 @@ class FeatureTable(Table):
         try:
             return kind_named(kind).name
         except KeyError as error:
-            raise ValueError(f"no kind of feature: {kind}") from error
+            known = tuple(one.name for one in every_kind())
+            what = Message(
+                "feature.no_such_kind", 'there is no kind of feature "{kind}"; the kinds are {known:and}',
+                kind=kind, known=known,
+            )  # fmt: skip
+            raise WrongValue(what) from error
 
     @model_validator(mode="after")
     def _region_or_regions(self) -> FeatureTable:

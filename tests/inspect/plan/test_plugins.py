@@ -5,12 +5,15 @@ import sys
 import numpy as np
 import pytest
 
+from core.errors import InputError
+from core.files.plan.plan_file import read_plan
 from core.inspect.evaluate import evaluate
 from core.inspect.plan import plugins as plugins_module
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS, every_kind, kind_named
 from core.inspect.plan.plugins import CHECKS_GROUP, KINDS_GROUP
+from core.messages import ENGLISH
 from tests.inspect.block_scan import BlockScan
 
 SOURCE = """
@@ -119,3 +122,14 @@ def test_what_cannot_be_used_is_told_and_our_own_kinds_stay(installed, groups, w
 
 def test_without_packages_nothing_is_said(monkeypatch):
     assert not [note for note in measured(FeatureSpec("top", "plane")).notes if note.code.startswith("plugin.")]
+
+
+def test_a_plan_with_an_unknown_kind_is_told_all_kinds_those_of_packages_among_them(installed, tmp_path):
+    installed(kinds=["WEAR"])
+    plan = tmp_path / "plan.toml"
+    plan.write_text('[[feature]]\nname = "a"\nkind = "wera"\n')
+    with pytest.raises(InputError) as told:
+        read_plan(plan)
+    known = ENGLISH.joined([kind.name for kind in every_kind()], "and")
+    assert 'there is no kind of feature "wera"' in str(told.value) and f"the kinds are {known}" in str(told.value)
+    assert known.endswith("and wear")
