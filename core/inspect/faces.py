@@ -162,8 +162,9 @@ def _no_pair(cloud: Cloud, faces: list[FoundPlane], tolerance: float) -> InputEr
             where=POINT_CLOUD,
             todo=Message(
                 "gauge.advice_lay_flat",
-                "lay the part flat, without chips or burrs under it, and scan again; a part that is so gets a feature "
-                "for the angle",
+                "lay the part flat, without chips or burrs under it, and scan again; if it lies flat as it is, take "
+                "check pictures of the plane target: a rig that changed slants faces, too; a part that is so gets a "
+                "feature for the angle",
             ),
         )
     return InputError(

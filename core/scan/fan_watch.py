@@ -78,6 +78,8 @@ class FanRest:
         once, and all frames are used.
     frames, stretches
         In how many frames how many of its stretches are watched.
+    shifts
+        What was watched, as of `fan_shifts`; None where that is not kept.
     """
 
     at_rest: NDArray[np.bool_]
@@ -88,6 +90,7 @@ class FanRest:
     drifts: bool = False
     frames: int = 0
     stretches: int = 0
+    shifts: tuple[Index, Array, Array] | None = None
 
     @property
     def known(self) -> bool:
@@ -103,6 +106,13 @@ class FanRest:
     def what_moved(self) -> Message:
         """Name of what has moved: the part or, if nearly all of the fan's light has shifted, camera, fan or table."""
         return EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS
+
+    def possible(self, movements: Sequence[Between]) -> tuple[Between, ...]:
+        """Select those of the `movements`, in order, that the watched light does not surely deny."""
+        if self.shifts is None:
+            return tuple(movements)
+        seen, shifts, noise_px = self.shifts
+        return possible_movements(movements, seen, shifts, np.maximum(noise_px, LEAST_NOISE_PX))
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Make a note for the technician if part or rig moved, or if too little light was watched to know; else ().
@@ -132,7 +142,8 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     """Find when part or rig moved during a scan, by shifts of the fan's light in its frames since the reference."""
     count = len(features.frames)
     known, shifts, noise = fan_shifts(features)
-    at_rest = FanRest(np.ones(count, dtype=np.bool_), frames=len(known), stretches=shifts.shape[1])
+    everything = np.ones(count, dtype=np.bool_)
+    at_rest = FanRest(everything, frames=len(known), stretches=shifts.shape[1], shifts=(known, shifts, noise))
     if not at_rest.known:
         return at_rest
     level = np.maximum(noise, LEAST_NOISE_PX)

@@ -37,7 +37,7 @@ from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
-from core.scan.single_change import Explanation, explain_by_change
+from core.scan.single_change import AS_CALIBRATED, Explanation, explain_by_change
 from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, largest_rigid_interval
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
@@ -73,7 +73,6 @@ LOCATE_BETTER = Message(
     field=Field("laser_fan.lines"),
     command=Command("--sigma-cut MM"),
 )
-AS_CALIBRATED = Message("scan.advice_as_calibrated", "scan again with the rig as it was at its calibration")
 
 
 def reconstruct(
@@ -140,13 +139,12 @@ def reconstruct(
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
-    with cause_first(unrest, shares):
+    changed = () if solved.explanation is None else (solved.explanation,)
+    with cause_first(
+        lambda: (*unrest(), *map(_changed, changed)), lambda: (*shares(), *(one.cause for one in changed))
+    ):
         if not np.any(cloud.sweep >= 0):
-            raise _refused(
-                too_bright,
-                _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
-                LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
-            )
+            raise _refused(too_bright, _no_points(options.sigma_cut_mm, () if changed else sweeps.notes), LOCATE_BETTER)
     met = ~crossings.on_plane
     of_met = crossings.select(met), line[met], reasons[met]
     records = bounces.counted(frame_records(features, *of_met, sweeps.frames, cloud, camera))
@@ -275,6 +273,22 @@ def _unrest(watched: FanRest, names: Sequence[str]) -> Iterator[Reason]:
         )
 
 
+def _changed(explanation: Explanation) -> Reason:
+    """A change of the rig as the reason of a complaint about sweeps that do not fit together."""
+    return Reason(
+        Suspect.RIG_CHANGED,
+        lambda reason: Message(
+            "scan.changed_and_not_solved",
+            "camera or laser are not as calibrated (what would explain it: {changes:;}); of what was measured so: "
+            "{reason}",
+            changes=tuple(one.message for one in explanation.changes),
+            reason=reason,
+        ),
+        AS_CALIBRATED,
+        kind=OwnCause,
+    )
+
+
 def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera) -> tuple[Message, ...]:
     """What fixes the scale, or is missing, by what the fan's own points of all that was `found` show."""
     if datum is None:
@@ -340,10 +354,13 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    moved = bool(part.movements) and not watched.drifts  # a drift makes crossings disagree, too
-    explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed
-    if explanation is None and not explained and (sweeps.fan_silenced or sweeps.judged):
+    explained = bool(watched.unsteady or of_hand or sweeps.collapsed)
+    at_rest = not watched.possible(part.movements)  # whatever crossings would gain by a movement
+    if explanation is None and at_rest and not explained and (sweeps.fan_silenced or sweeps.judged):
         explanation = explain_by_change(among, line[kept], camera, control, progress)
+    movements = () if at_rest and explanation is not None else part.movements
+    explained = explained or bool(movements)
+    moved = bool(movements) and not watched.drifts  # a drift makes crossings disagree, too
     judged = sweeps.notes + (() if explained or sweeps.fan_silenced else sweeps.judged)
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
@@ -359,7 +376,7 @@ def _solve(
         bool(watched.movements or moved) if watched.known or part.known else None,
         explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
-        part.movements if moved else (),
+        movements if moved else (),
     )
 
 
@@ -464,15 +481,14 @@ def _unsure_share(found: Cloud, cloud: Cloud) -> float:
     return 1 - left / max(swept, 1)
 
 
-def _no_points(sigma_cut_mm: float, explanation: Explanation | None, notes: tuple[Message, ...]) -> Message:
-    reasons = notes if explanation is None else (explanation.note,)
-    if not reasons:
+def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:
+    if not notes:
         return Message("scan.no_points", "no point of any sweep is known to {cut_mm} mm", cut_mm=sigma_cut_mm)
     return Message(
         "scan.no_points_because",
         "no point of any sweep is known to {cut_mm} mm ({reasons:;})",
         cut_mm=sigma_cut_mm,
-        reasons=reasons,
+        reasons=notes,
     )
 
 

@@ -25,6 +25,7 @@ from core.model.arrays import Array
 from core.model.robust import Schedule
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
+from core.scan.first_cause import Cause, Suspect
 from core.scan.known_planes.known_plane import Control
 from core.scan.network.adjustment import HUBER_AT
 from core.scan.network.equations import Adjustment
@@ -48,6 +49,9 @@ SURELY = 20.0
 """Difference of the sums of squares that two changes leave, from which on they are told apart."""
 WEIGHTS = Schedule(4, huber_at=HUBER_AT)
 """Of reweighting of each: the planes have settled by then as far as the misfit tells."""
+AS_CALIBRATED = Message(
+    "scan.advice_as_calibrated", "set the rig as it was at its calibration, or calibrate it again, then scan again"
+)
 LARGE = 5.0
 """Residual in standard deviations beyond which a crossing counts no more: a wrong one, whatever has changed."""
 
@@ -122,6 +126,11 @@ class Explanation:
     def share(self) -> float:
         """Share of the excess misfit of the crossings that the likeliest change explains."""
         return (self.misfit - self.changes[0].left) / (self.misfit - 1)
+
+    @property
+    def cause(self) -> Cause:
+        """Return the change of the rig as a cause of the misfit, with its share."""
+        return Cause(Suspect.RIG_CHANGED, self.share)
 
     @property
     def note(self) -> Message:

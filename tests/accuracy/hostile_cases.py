@@ -77,6 +77,10 @@ EFFECTS = (
         ],
     ),
     Effect(
+        "the rig was knocked since its calibration",
+        [("picture by 10 px", {"drifted_px": 10.0}), ("laser by 10 mrad", {"turned_urad": -1e4})],
+    ),
+    Effect(
         "exposed too long, blooming",
         [
             ("4 ×, 5 %", {"sensor": SensorEffects(brightness=4.0, bloom=0.05, smear=1e-5)}),
@@ -204,7 +208,7 @@ EFFECTS = (
 BOUNCES, LIGHT = "second bounces between table and part's sides", "scan.room_light_changed"
 CHANGED = (
     "cause.rig_changed", "scan.fan_has_moved", "inspection.rig_has_changed", "inspection.rig_may_have_changed",
-    "validity.check_failed",
+    "validity.check_failed", "gauge.changed_and_no_faces", "scan.changed_and_not_solved", "scan.explained_by_change",
 )  # fmt: skip
 MOVEMENT = (
     "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
@@ -223,6 +227,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "a shadow that passes": (LIGHT,),
     "the rig warms within the scan": (*CHANGED, *DRIFT, "scan.fan_shifted"),
     "the rig warmed since its calibration": CHANGED,
+    "the rig was knocked since its calibration": CHANGED,
     "exposed too long, blooming": ("scan.overexposed", "scan.bright_in_part", "fan.saturated_stripes"),
     "automatic exposure": ("scan.brightness_changed", "fan.brightness_changed"),
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),

@@ -63,6 +63,7 @@ REMEDIES: Sequence[Remedy] = (
         "calibrate again",
         _with(drifted_px=0.0, turned_urad=0.0, warming=NO_WARMING),
     ),
+    Remedy("the rig was knocked since its calibration", "calibrate again", _with(drifted_px=0.0, turned_urad=0.0)),
     Remedy("exposed too long, blooming", "1 stop less of light, and again until it is not told", _less_light(3.0)),
     Remedy("automatic exposure", "fix exposure and gain", _with(sensor=SensorEffects())),
     Remedy("camera's target bowed", "fix it to something flat", _with(plates=PlateEffects())),

@@ -8,6 +8,7 @@ import pytest
 
 from core.calibrate.change import changes as rig_changes
 from core.calibrate.change import displaced_fan, laser_of
+from core.errors import InputError
 from core.findings.finding import Weight
 from core.findings.proof import ScanFacts
 from core.findings.table import FINDINGS
@@ -16,6 +17,7 @@ from core.scan.causes import Normal, causes_of_light, choose, compare_causes, no
 from core.scan.fan_watch import FanRest
 from core.scan.features.frames import FrameFeatures
 from core.scan.first_cause import Cause, Suspect
+from core.scan.method import ReconstructOptions
 from core.scan.reconstruct import reconstruct
 from core.scan.standstill import RigidInterval
 from core.simulate.effects.warming import Warming
@@ -117,6 +119,21 @@ def test_a_laser_that_turned_is_the_first_cause(still, axis):
     turned = displaced_fan(still.rig.fan, np.radians(0.2) * np.eye(3)[axis], laser_of(still.rig.fan))
     _, causes = compared(still, fan=turned, movements=(Between(11, 12),))
     assert causes[0].suspect == Suspect.RIG_CHANGED and causes[0].share > 0.5
+
+
+@pytest.mark.parametrize("watched", [True, False])
+def test_a_scan_that_a_turned_laser_leaves_without_a_point_is_refused_by_that(still, watched):
+    """Crossings a hundred times as far off as their noise gain by a movement, too: the fan's light may deny it."""
+    features, rng = still.measured(1), np.random.default_rng(1)
+    if watched:
+        frames = (replace(one, fan_shifts_px=rng.normal(0.0, 0.005, 12)) for one in features.frames)
+        features = replace(features, frames=tuple(frames))
+    turned = displaced_fan(still.rig.fan, np.array([0.0, 0.0, -0.1]), laser_of(still.rig.fan))
+    with pytest.raises(InputError) as refused:
+        reconstruct(features, still.rig.camera, turned, ReconstructOptions(row_time_us=0.0))
+    assert refused.value.code == ("scan.changed_and_not_solved" if watched else "scan.no_points_because")
+    assert ("the fixed laser turned" in str(refused.value)) == watched
+    assert ("calibrate it again" in str(refused.value)) == watched
 
 
 def of_two(gradient, misfit, *, alike=0.0, places=1):

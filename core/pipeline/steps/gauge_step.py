@@ -32,6 +32,7 @@ from core.scan.fan_watch import WARM_UP
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Reason, Suspect, cause_first
+from core.scan.single_change import AS_CALIBRATED
 from core.scan.standstill import HOLD_STILL
 from core.scan.surface.cloud import FAN, Cloud
 
@@ -45,6 +46,8 @@ UNSURE = 0.5
 ENOUGH_OF_FAN = 0.25
 """Share of the fan's own points within the σ cut that shows whether a face is the only one in view. Of a set in order
 at a quarter of the usual size 0.55 are, of one with a mosaic and JPEG, where the part's face is lost, 0.04."""
+MOST = 0.5
+"""Share of what crossings are off too much, from which on a cause explains most of it."""
 FEW_FRAMES, USUAL_FRAMES = 20, 30
 """Frames that locate the surface: so few are named where faces are not found, and so many are asked for then."""
 MATTERS = 1.1
@@ -160,6 +163,7 @@ def reasons_of_no_faces(scan: ScanFile, cloud: Cloud, bends: Array | None) -> It
             WARM_UP,
             of_own=True,
         )
+    yield from _rig_changed(scan)
     yield from at_fault(scan.features.faults)
     yield from _too_bright(scan)
     yield from _unsure(scan)
@@ -191,6 +195,26 @@ def _bent(cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
             "gauge.advice_straight_lines",
             "see what the calibration of the laser planes says of the lines, mend that, and calibrate them again",
         ),
+        of_own=True,
+    )
+
+
+def _rig_changed(scan: ScanFile) -> Iterator[Reason]:
+    """That camera or laser changed since they were calibrated: plane faces slant by that, and points are unsure.
+
+    It counts if pictures of the day are sure of it, or it explains most of what crossings are off too much.
+    """
+    share = next((one.share or 0.0 for one in scan.causes if one.suspect == Suspect.RIG_CHANGED), 0.0)
+    if not scan.facts.rig_changed and share < MOST:
+        return
+    yield Reason(
+        Suspect.RIG_CHANGED,
+        lambda reason: Message(
+            "gauge.changed_and_no_faces",
+            "camera or laser changed since they were calibrated; of what is measured so: {reason}",
+            reason=reason,
+        ),
+        AS_CALIBRATED,
         of_own=True,
     )
 

@@ -22,13 +22,13 @@ class Line(SimpleNamespace):
         return len(self.saturated)
 
 
-def scan_of(*, unsure_share=0.0, saturated=0, faults=(), sweeps=36, facts=None):
+def scan_of(*, unsure_share=0.0, saturated=0, faults=(), sweeps=36, facts=None, causes=()):
     """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
     line = Line(saturated=np.arange(100) < saturated)
     features = SimpleNamespace(fan=[line], frames=[], notes=(), faults=faults)
     facts = ScanFacts() if facts is None else facts
     return SimpleNamespace(
-        unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps), facts=facts, causes=()
+        unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps), facts=facts, causes=causes
     )
 
 
@@ -38,11 +38,11 @@ def cloud_with(sigma=(0.01, 0.01, 0.01, 0.05)):
     return SimpleNamespace(points=points, sweep=np.array([FAN, FAN, FAN, 0]), sigma=np.array(sigma))
 
 
-def told_first(scan, error, *, bends=None, causes=()):
+def told_first(scan, error, *, bends=None):
     """The complaint as the step tells it."""
     with (
         pytest.raises(InputError) as refused,
-        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), bends), lambda: causes),
+        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), bends), lambda: scan.causes),
     ):
         raise error
     return refused.value
@@ -95,19 +95,38 @@ def test_lines_that_are_no_planes_are_named_before_what_seems_to_have_moved(off_
 
 
 def test_what_moved_is_named_before_lines_that_bend_where_it_explains_most():
-    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True))
     most = [Cause(Suspect.MOVED, 0.8, 12, 1e-9), Cause(Suspect.BENT_LINES, 0.1, 1, 1e-4)]
-    refused = told_first(scan, no_faces(), bends=bends, causes=most)
+    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True), causes=most)
+    refused = told_first(scan, no_faces(), bends=bends)
     assert refused.code == "gauge.moved_and_no_faces"
     assert "(what is named first explains 80 % of what is too large)" in str(refused)
 
 
 def test_of_two_causes_that_were_compared_the_one_that_explains_more_is_named_though_it_is_not_most():
-    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True))
     shares = [Cause(Suspect.MOVED, 0.4, 12, 1e-9), Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
-    refused = told_first(scan, no_faces(), bends=bends, causes=shares)
+    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True), causes=shares)
+    refused = told_first(scan, no_faces(), bends=bends)
     assert refused.code == "gauge.moved_and_no_faces"
     assert "(what is named first explains 40 % of what is too large)" in str(refused)
+
+
+@pytest.mark.parametrize("kind", [InputError, OwnCause])
+@pytest.mark.parametrize(
+    ("facts", "share", "changed"),
+    [
+        (ScanFacts(rig_changed=True), None, True),  # by pictures of the day
+        (ScanFacts(fan_disagrees=True), 0.99, True),
+        (ScanFacts(), 0.3, False),
+        (ScanFacts(), None, False),
+    ],
+)
+def test_a_rig_that_changed_is_named_before_faces_that_lie_askew_by_it(kind, facts, share, changed):
+    causes = () if share is None else (Cause(Suspect.RIG_CHANGED, share, 6, 1e-9),)
+    refused = told_first(scan_of(unsure_share=0.3, facts=facts, causes=causes), no_faces(kind))
+    assert refused.code == ("gauge.changed_and_no_faces" if changed else "gauge.no_parallel_faces")
+    assert "no two are parallel" in str(refused)
+    assert ("calibrate it again" in str(refused)) == changed
+    assert ("explains 99 %" in str(refused)) == (changed and share is not None)
 
 
 def test_only_the_likeliest_cause_is_told_of_faces_that_are_not_found():
@@ -136,7 +155,7 @@ def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(holding):
 def test_lines_that_bend_are_named_before_unsure_points_though_they_explain_little():
     bends = np.diag([0, 0, 0.05 / 500**2])[None]
     little = [Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
-    refused = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends, causes=little)
+    refused = told_first(scan_of(unsure_share=0.8, causes=little), no_faces(), bends=bends)
     assert refused.code == "gauge.bent_and_no_faces" and "explains 20 % of what is too large" in str(refused)
     facts_alone = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends)
     assert facts_alone.code == "gauge.bent_and_no_faces" and "explains" not in str(facts_alone)
