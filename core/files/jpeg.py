@@ -8,12 +8,13 @@ ITU-T T.871, JPEG File Interchange Format (2011), section 7: brightness and two 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
 from core.acquire.channel import Channel, is_difference
-from core.image.stripes.noise import UNCOMPRESSED, Compression
+from core.image.stripes.noise import Compression
 from core.messages import Message
 
 START = b"\xff\xd8"
@@ -50,16 +51,13 @@ def jpeg_damage(data: bytes) -> Message | None:
     return _ENDS_EARLY
 
 
-def compression_of(data: bytes, channel: Channel | None = None) -> Compression:
-    """Estimate the errors in grey levels that JPEG compression makes in a channel of a picture; none for other files.
+Component: TypeAlias = tuple[float, float]
+"""Of brightness or a colour: the step in grey levels to which the terms that make up a stripe are rounded (RMS), and
+how many times more pixels of the picture each of its own takes."""
 
-    From the file's own tables: a term in steps of q is off by q/√12, on the average of the terms that make up a
-    stripe. A JPEG holds brightness and two colours, each with its table, and the colours mostly in fewer pixels: a
-    stripe in one of them is off by as many times more pixels of the picture. Grey is brightness alone, a difference of
-    channels colour alone, a channel of both. `data` may end behind the tables.
-    """
-    if not data.startswith(START):
-        return UNCOMPRESSED
+
+def components_of(data: bytes) -> tuple[Component, ...]:
+    """List the components of a JPEG from its tables; () if they are damaged or missing. `data` may end behind them."""
     steps: dict[int, float] = {}
     components: list[tuple[int, int, int]] = []
     try:
@@ -71,16 +69,28 @@ def compression_of(data: bytes, channel: Channel | None = None) -> Compression:
             elif marker in _FRAMES:
                 components = _components(data[start:end])
     except ValueError:
-        return UNCOMPRESSED
+        return ()
     components = components or [(1, 1, 0)]
     across, down = (max(samples[way] for samples in components) for way in (0, 1))
+    return tuple((steps.get(table, 0.0), max(across / columns, down / rows)) for columns, rows, table in components)
+
+
+def compression_by(
+    components: Sequence[Component], channel: Channel | None = None, *, assumed: bool = False
+) -> Compression:
+    """Estimate the errors in grey levels that rounding its components makes in a channel of a picture.
+
+    A term in steps of q is off by q/√12, on the average of the terms that make up a stripe. There are brightness and
+    two colours, each with its step, and the colours mostly in fewer pixels: a stripe in one of them is off by as many
+    times more pixels of the picture. Grey is brightness alone, a difference of channels colour alone, a channel of
+    both. `assumed` says that the steps are not known.
+    """
     squares, block = 0.0, _BLOCK_PX
-    for share, (columns, rows, table) in zip(_shares(channel, len(components)), components, strict=False):
-        if share and table in steps:
-            coarser = max(across / columns, down / rows)
-            squares += (share * coarser * steps[table]) ** 2 / 12
+    for share, (step, coarser) in zip(_shares(channel, len(components)), components, strict=False):
+        if share and step:
+            squares += (share * coarser * step) ** 2 / 12
             block = max(block, _BLOCK_PX * coarser)
-    return Compression(float(np.sqrt(squares)), block)
+    return Compression(float(np.sqrt(squares)), block, assumed)
 
 
 def _shares(channel: Channel | None, components: int) -> tuple[float, ...]:

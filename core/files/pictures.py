@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core.acquire.channel import Channel
 from core.acquire.grey import to_grey
 from core.errors import InputError
-from core.files import jpeg
+from core.files import compression, jpeg
 from core.files.atomic import write_bytes
 from core.files.limits import check_file, check_pixels
 from core.files.picture_size import declared_sizes
@@ -92,7 +92,6 @@ _PGM_DIGITS = 18
 _ENDS_EARLY = Message("picture.ends_early", "ends early")
 _TABLES_WITHIN = 1 << 17
 """Bytes in which a JPEG's tables are: they may stand behind a thumbnail of up to 64 kB."""
-_PNG = b"\x89PNG\r\n\x1a\n"
 _QUICKLY = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
 """Noise has no repeats worth looking for: half the time of run lengths, and no larger."""
 if hasattr(cv2, "IMWRITE_PNG_FILTER"):  # since OpenCV 4.11; one filter for all rows halves the time again
@@ -181,7 +180,7 @@ def compression_of(path: Path, channel: Channel | None = None) -> Compression:
     check_file(path)
     try:
         with path.open("rb") as file:
-            return jpeg.compression_of(file.read(_TABLES_WITHIN), channel)
+            return compression.compression_of(file.read(_TABLES_WITHIN), channel)
     except OSError:
         return UNCOMPRESSED
 
@@ -209,10 +208,15 @@ def picture_parts(path: Path, picture: Picture) -> tuple[bytes | memoryview, ...
         raise ValueError(f"{path.name} ends neither in .png nor in .pgm")
     if picture.ndim != 2 or picture.dtype not in (np.uint8, np.uint16):
         raise ValueError(f"a picture is 2-D uint8 or uint16, not {picture.ndim}-D {picture.dtype}")
+    return (encode_png(picture),)
+
+
+def encode_png(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> memoryview:
+    """Encode a picture (height, width), or with colours (height, width, 3) in OpenCV's order, as the bytes of a PNG."""
     done, data = cv2.imencode(".png", picture, _QUICKLY)
     if not done:
-        raise ValueError(f"{path.name} could not be encoded")
-    return (data.data,)
+        raise ValueError(f"a picture of {picture.shape} could not be encoded")
+    return data.data
 
 
 def _damage(data: bytes) -> Message | None:
@@ -223,7 +227,7 @@ def _damage(data: bytes) -> Message | None:
     """
     if not data:
         return Message("picture.empty", "is empty (0 bytes)")
-    if data.startswith(_PNG):
+    if data.startswith(compression.PNG):
         return _png_damage(data)
     if data.startswith(jpeg.START):
         return jpeg.jpeg_damage(data)
@@ -236,7 +240,7 @@ def _damage(data: bytes) -> Message | None:
 
 def _png_damage(data: bytes) -> Message | None:
     """Walk the chunks of a PNG up to IEND, checking the checksum of each."""
-    at = len(_PNG)
+    at = len(compression.PNG)
     view = memoryview(data)
     while at + 12 <= len(data):
         end = at + 8 + int.from_bytes(view[at : at + 4], "big")

@@ -7,10 +7,10 @@ from core.findings.finding import Effect, Finding, Weight
 ROWS = (
     # Files of a set
     Finding("set.not_read", Weight.CAUTION, Effect.NONE,
-            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png, a film picture by "
-            "picture.",
-            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, a film picture by "
-            "picture."),
+            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png, or import the frames "
+            "of a film.",
+            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, or import the "
+            "frames of a film."),
     Finding("set.log_not_read", Weight.CAUTION, Effect.WIDENS_U,
             "The log of a recording is damaged ({reason}): when and by which camera it was made, and whether frames "
             "were lost, is not known, and U may be larger by what may have changed since the calibration. Remove the "
@@ -26,8 +26,11 @@ ROWS = (
             "With a rolling one and a hand that moves, points are off by more than their σ says. State 0 for a "
             "global shutter."),
     Finding("scan.compressed", Weight.CAUTION, Effect.WIDENS_U,
-            "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
-            "it; record PNG."),
+            "The frames are compressed, as JPEG or in a film: that loses {grey:.1f} grey levels, more than their noise "
+            "of {noise:.1f}. σ contains it; record PNG."),
+    Finding("scan.compression_assumed", Weight.CAUTION, Effect.WIDENS_U,
+            "The frames are of a film that does not tell what its compression loses: {grey:.1f} grey levels are "
+            "assumed; their noise is {noise:.1f}. σ contains it; record PNG."),
     Finding("scan.colour_mosaic", Weight.GRAVE, Effect.NO_PROOF,
             "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are too fine "
             "for its tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), "

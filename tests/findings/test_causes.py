@@ -35,6 +35,7 @@ WIDENED = {
     "scan.kelvins_since_check_assumed": Cause.CHANGE,
     "scan.hours_assumed": Cause.CHANGE,
     "scan.compressed": Cause.POINT_NOISE,
+    "scan.compression_assumed": Cause.POINT_NOISE,
     "scan.speckled": Cause.FAN_SPECKLE,
     "scan.exposure_blur": Cause.POINT_NOISE,
     "scan.rows_roll": Cause.SWEEP_PLANES,

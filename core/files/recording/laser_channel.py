@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from core.acquire.channel import CHANNELS, PLAIN_CHANNELS, Channel
 from core.acquire.grey import saturated_in, to_grey
-from core.files.jpeg import compression_of
+from core.files.compression import compression_of
 from core.image.channel_names import CHANNEL_NAMES
 from core.messages import Message
 

@@ -61,10 +61,13 @@ class Compression:
         none.
     block_px
         Side of a block in px of the picture.
+    assumed
+        What the compression loses is not known: `grey` is what is usual.
     """
 
     grey: float = 0.0
     block_px: float = 8.0
+    assumed: bool = False
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.grey) and self.grey >= 0):

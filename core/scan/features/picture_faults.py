@@ -66,7 +66,9 @@ def faults_of(reference: ReferenceFeatures, mosaic: Mosaic) -> tuple[Message, ..
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
-    """Make a note if the errors of the frames' compression are larger than their noise; () if not."""
+    """Make a note if the errors of the frames' compression are larger than their noise, or not known; () if not."""
+    if noise.compression.assumed:
+        return (note_of("scan.compression_assumed", grey=noise.compression.grey, noise=noise.read_grey),)
     if noise.compression.grey <= noise.read_grey:
         return ()
     return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)

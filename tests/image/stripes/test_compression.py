@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.acquire.grey import to_grey
-from core.files.jpeg import compression_of
+from core.files.compression import compression_of
 from core.image.stripes.extraction import StripeSettings, extract_centrelines
 from core.image.stripes.noise import Compression, estimate_noise
 from tests.image.synthetic_stripes import draw, expose, straight

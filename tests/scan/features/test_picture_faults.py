@@ -99,7 +99,7 @@ def test_a_refusal_begins_with_the_faults_of_the_pictures():
     with pytest.raises(InputError) as refused, cause_first(lambda: at_fault(faults)):
         raise InputError(MOVED, where="scan", todo=Message("x.y", "hold both still"))
     assert refused.value.what.values["faults"] == faults
-    assert str(refused.value).startswith("scan: The frames are JPEG")
+    assert str(refused.value).startswith("scan: The frames are compressed")
     assert "may be why object or camera moved; mend that first" in str(refused.value)
 
 
@@ -113,7 +113,7 @@ def test_a_refusal_asks_for_faults_and_for_no_notes(monkeypatch):
     for notes, faults in (((), told), (told, ())):
         with pytest.raises(InputError) as refused:
             judgement.solved_scan(SimpleNamespace(notes=notes, faults=faults), rig, None, None)
-        assert ("The frames are JPEG" in str(refused.value)) == bool(faults)
+        assert ("The frames are compressed" in str(refused.value)) == bool(faults)
 
 
 def test_a_refusal_of_faultless_pictures_stays_as_it_is():
@@ -121,3 +121,10 @@ def test_a_refusal_of_faultless_pictures_stays_as_it_is():
     with pytest.raises(InputError) as refused, cause_first(lambda: at_fault(())):
         raise error
     assert refused.value is error
+
+
+def test_a_film_that_does_not_tell_its_loss_is_told_however_large_the_noise():
+    for noise in (1.0, 9.0):
+        (note,) = notes_on_compression(NoiseModel(noise, compression=Compression(5.8, assumed=True)))
+        assert note.code == "scan.compression_assumed"
+        assert "5.8 grey levels are assumed" in str(note)
