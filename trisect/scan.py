@@ -16,6 +16,7 @@ from core.calibrate.rig_spread import stability_by_pictures
 from core.errors import InputError
 from core.findings.proof import ScanFacts
 from core.findings.table import gravest_first
+from core.image.background import quantile_reference, sample_indices
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -31,7 +32,6 @@ from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_features, read_reference
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of, mosaic_of
-from core.scan.features.reference import quantile_reference, sample_indices
 from core.scan.method import ReconstructOptions
 from core.scan.part_light import PartLight
 from core.scan.results import ScanResult

@@ -8,7 +8,7 @@ in a JPEG it is of coarser pixels and steps.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
@@ -18,9 +18,12 @@ from numpy.typing import NDArray
 from core.acquire.channel import CHANNELS, PLAIN_CHANNELS, Channel
 from core.acquire.grey import saturated_in, to_grey
 from core.files.compression import compression_of
+from core.image.background import FEWEST, quantile_reference
 from core.image.channel_names import CHANNEL_NAMES
 from core.messages import Message
 
+LOOKED_AT = 3
+"""Pictures that decide on the channel of a part."""
 CLEARLY = 1.5
 """A channel is taken if it is so many times better than grey, and a difference if it is so many times better than the
 best of these: less is no reason to leave what everybody expects."""
@@ -74,6 +77,32 @@ class LaserChannel:
                 times=self.times,
             ),
         )
+
+    def proposal(self, name: str) -> tuple[Message, ...]:
+        """Tell the colour channel proposed for the frames of the film `name`; () for grey."""
+        if self.channel is None:
+            return ()
+        return (
+            Message(
+                "import.channel_proposed",
+                "The hand-held laser in {name} stands out best in the {channel} channel, {times:.1f} times as far as "
+                "in grey: it is looked at in that one, unless channel in rig.toml states another.",
+                name=name,
+                channel=CHANNEL_NAMES[self.channel],
+                times=self.times,
+            ),
+        )
+
+
+def against_background(frames: Sequence[LitPicture]) -> list[LitPicture]:
+    """Set frames of a sweep without a picture of the fan alone against what they themselves show behind the sweep.
+
+    Of those given, spread over the scan, three are returned; all as they are if too few make a background.
+    """
+    if len(frames) < FEWEST or len({frame.on.shape for frame in frames}) > 1:
+        return list(frames)
+    background = quantile_reference([frame.on for frame in frames])
+    return [replace(frame, off=background) for frame in frames[:: max(1, len(frames) // LOOKED_AT)][:LOOKED_AT]]
 
 
 def laser_channel(pictures: Sequence[LitPicture], *, raw: bool = False) -> LaserChannel:

@@ -14,17 +14,21 @@ from core.acquire.grey import has_colours, to_grey
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes
-from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
+from core.files.recording.laser_channel import (
+    LOOKED_AT,
+    LaserChannel,
+    LitPicture,
+    against_background,
+    laser_channel,
+)
 from core.files.recording.recording_set import RecordingSet
+from core.image.background import sample_indices
 from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
 from core.image.repeated import Repeats, pixels_of
 from core.messages import Message
 from core.progress import Progress, silent, steps
 from core.stage_times import StageTimes, stage
-
-_LOOKED_AT = 3
-"""Pictures that decide on the channel of a part."""
 
 
 class PictureReader:
@@ -185,14 +189,20 @@ class PictureReader:
 
 
 def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:
-    """By three pictures of a part; grey where the first one is grey, or they cannot be read."""
+    """By three pictures of a part; grey where the first one is grey, or they cannot be read.
+
+    Frames without a picture of the fan alone are set against their own background, as their stripes will be.
+    """
     mosaic = recording_set.rig.mosaic
     if part == "scan":
         pairs = [(frame, recording_set.reference) for frame in recording_set.frames]
     else:
         pairs = [(pair.on, pair.off) for pair in (recording_set.planes or recording_set.check)]
+    alone = part == "scan" and recording_set.reference is None
+    few = pairs[:: max(1, len(pairs) // LOOKED_AT)][:LOOKED_AT]
+    chosen = [pairs[at] for at in sample_indices(len(pairs))] if alone else few
     pictures = []
-    for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
+    for on, off in chosen:
         try:
             data = read_bytes(on)
             lit = decode_colours(data, on, mosaic)
@@ -203,7 +213,7 @@ def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:
             return LaserChannel()
         same = dark is not None and dark.shape == lit.shape
         pictures.append(LitPicture(lit, dark if same else None, data))
-    return laser_channel(pictures, raw=mosaic is not None)
+    return laser_channel(against_background(pictures) if alone else pictures, raw=mosaic is not None)
 
 
 def _check_depth(path: Path, picture: Picture, first_name: str, first: Picture) -> None:

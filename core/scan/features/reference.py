@@ -1,7 +1,7 @@
 """The reference: what the camera sees without the hand-held laser, as features, and whether that still holds.
 
 The fan and the object stand still during a scan, so the sweep's stripe is the frame minus the reference. When there is
-no reference picture, the per-pixel low quantile over a sample of the scan is one: a sweep covers a pixel in few frames.
+no reference picture, one is made of the frames (`core.image.background`).
 """
 
 from __future__ import annotations
@@ -31,35 +31,7 @@ from core.scan.features.crossings import CrossingWindow
 from core.scan.features.fan_light import FanLight
 from core.scan.features.room_light import RoomLight
 
-SAMPLE = 15
-"""At most this many frames, spread over the scan, make a quantile reference: memory does not grow with the scan."""
-QUANTILE = 0.35
-"""Of the grey values of a pixel over the scan: below all that the sweep lights."""
-
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
-
-
-def sample_indices(count: int) -> list[int]:
-    """Choose at most `SAMPLE` indices of frames, spread evenly from 0 to `count` − 1."""
-    return sorted({round(i) for i in np.linspace(0, count - 1, min(count, SAMPLE))}) if count else []
-
-
-def quantile_reference(pictures: Sequence[Picture]) -> Picture:
-    """Compute a reference picture (H, W) as the low quantile, pixel by pixel, of `pictures`, each (H, W).
-
-    Raises
-    ------
-    ValueError
-        With fewer than three pictures: a sweep would stay in the background.
-    """
-    if len(pictures) < 3:
-        raise ValueError(f"{len(pictures)} pictures cannot tell the background from the sweep")
-    rank = int(QUANTILE * (len(pictures) - 1))
-    rows = [
-        np.partition(np.stack([picture[row] for picture in pictures]), rank, axis=0)[rank]
-        for row in range(len(pictures[0]))
-    ]
-    return np.stack(rows)
 
 
 def picture_difference(picture: Picture, base: Picture) -> NDArray[np.int16] | NDArray[np.float32]:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.acquire.grey import saturated_in, to_grey
-from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
+from core.files.recording.laser_channel import LaserChannel, LitPicture, against_background, laser_channel
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import default_rig, rig_to_toml
@@ -26,6 +26,24 @@ def lit(colour, seed, light=True, room=60.0):
 
 
 RED, GREEN, BLUE, WHITE = (2, 8, 150), (5, 150, 20), (150, 8, 2), (60, 60, 60)
+
+
+def test_frames_without_a_reference_are_judged_by_what_changes_and_not_by_what_is_painted():
+    """A red line is painted on the wall, a weaker blue one moves over it."""
+    frames = []
+    for number in range(9):
+        painted = lit(RED, number).astype(int)
+        moved = np.roll(lit(BLUE, 20 + number), 10 * number, axis=0).astype(int)
+        frames.append(LitPicture(np.clip(painted + 2 * (moved - 60) // 3, 0, 255).astype(np.uint8)))
+    assert laser_channel(frames[:3]).channel != "blue"
+    against = against_background(frames)
+    assert len(against) == 3
+    assert laser_channel(against).channel == "blue"
+
+
+def test_two_frames_make_no_background():
+    frames = [LitPicture(lit(RED, number)) for number in range(2)]
+    assert against_background(frames) == frames
 
 
 @pytest.mark.parametrize("with_off", [True, False])

@@ -1,13 +1,9 @@
 import numpy as np
 import pytest
 
+from core.image.background import quantile_reference, sample_indices
 from core.image.stripes.centreline import Centreline
-from core.scan.features.reference import (
-    check_reference,
-    picture_difference,
-    quantile_reference,
-    sample_indices,
-)
+from core.scan.features.reference import check_reference, picture_difference
 
 WIDTH = 2.0
 

@@ -15,6 +15,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
 from core.findings.table import note_of
+from core.image.background import FEWEST, quantile_reference, sample_indices
 from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
@@ -39,13 +40,9 @@ from core.scan.features.extraction import (
 )
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of, mosaic_of
-from core.scan.features.reference import quantile_reference, sample_indices
 from core.second_process import SecondProcess
 from core.settings.options import Options
 from core.stage_times import StageTimes
-
-FEWEST_FOR_QUANTILE = 3
-"""Frames from which the picture of the fan alone can be made: of three, the darkest third is one."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -190,7 +187,7 @@ def _exposures(
     readable = [picture for _, picture in sample if not isinstance(picture, Reason)]
     base = None if recording_set.reference is None else pictures.read_further(recording_set.reference, number)
     if base is None:
-        if len(readable) < FEWEST_FOR_QUANTILE:
+        if len(readable) < FEWEST:
             return None
         base = quantile_reference(readable)
     sites = pictures.sites("scan")
@@ -274,7 +271,7 @@ def reference_picture(
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(pictures.stream(sample), progress, "reference", len(sample))
     readable = [picture for _, picture in stream if not isinstance(picture, Reason)]
-    if len(readable) < FEWEST_FOR_QUANTILE:
+    if len(readable) < FEWEST:
         raise InputError(
             Message(
                 "scan.too_few_frames_for_reference",
