@@ -65,8 +65,9 @@ def _trisect(
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line `arguments`, by default the program's own, and exit with the command's exit code."""
-    # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
+    # OpenCV mumbles about damaged pictures and films on standard error; what matters is said in our own sentence.
     os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
+    os.environ["OPENCV_FFMPEG_LOGLEVEL"] = "-8"  # FFmpeg's AV_LOG_QUIET
     words = list(sys.argv[1:] if arguments is None else arguments)
     language.choose_loudness(talk.Loudness.USUAL)
     if isinstance(sys.stdout, TextIOWrapper):  # a file in the encoding of Windows has no σ: no reason to fail

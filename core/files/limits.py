@@ -17,6 +17,10 @@ from core.messages import Message
 
 DATA_BYTES = 4_000_000_000
 """Of pictures, clouds and arrays: a cloud of 50 million points has 3 GB."""
+FILM_BYTES = 100_000_000_000
+"""Of a film: it is read frame by frame."""
+FILM_FRAMES = 20_000
+"""Of one film: eleven minutes of 30 frames a second."""
 TEXT_BYTES = 30_000_000
 """Of JSON and CSV: a camera.json of 100 views of 2,000 corners has 4 MB."""
 STL_BYTES = 300_000_000
