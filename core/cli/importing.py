@@ -22,7 +22,8 @@ _COLUMNS = (label("name in the set"), label("picture"), label("fan off"), label(
 def understood(parts: Mapping[str, str], reference: Path | None, order: str) -> ImportPlan:
     """Plan an import from the text typed for each part of a recording set ("" for none), a reference and an order."""
     asked: dict[str, Any] = {part: Where.typed(text) for part, text in parts.items() if text}
-    return plan_import(ImportRequest(**asked, reference=reference, order=Order(order)))
+    with bar() as progress:
+        return plan_import(ImportRequest(**asked, reference=reference, order=Order(order)), progress)
 
 
 def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_json: bool) -> None:
@@ -65,7 +66,7 @@ def _print_pictures(pictures: Sequence[ImportedPicture]) -> None:
 def _row(one: ImportedPicture) -> tuple[str, str, str, str]:
     on, _ = one.files()[0]
     taken = "" if one.taken_at is None else str(one.taken_at)
-    return on, one.source.name, "" if one.off is None else one.off.name, taken
+    return on, one.shown_name, "" if one.off is None else one.off.name, taken
 
 
 def _empty_columns(pictures: Sequence[ImportedPicture]) -> set[str]:

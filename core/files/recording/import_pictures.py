@@ -1,21 +1,27 @@
-"""The pictures of an `ImportPlan` into a recording set, as links, with a record of where each came from."""
+"""The pictures of an `ImportPlan` into a recording set, as links, with a record of where each came from.
+
+Frames of films are written, as PNG, with their times in the recording's log.
+"""
 
 from __future__ import annotations
 
+import shutil
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, Literal
 
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import beside_of, cannot_write, make_folder, remove_leftovers, write_bytes
+from core.files.film import Film, film_pictures, film_png
 from core.files.json_text import write_json
 from core.files.linking import Way, link
 from core.files.reading import MISSING, read_bytes, read_json, resolved
-from core.files.recording.import_plan import ImportPlan, Where
+from core.files.recording.import_plan import ImportedPicture, ImportPlan, Where
+from core.files.recording.recording_log import LoggedFrame, RecordingLog
 from core.files.recording.recording_set import CHECK, KNOWN_PLANES, PARTS, RIG
 from core.files.recording.rig import read_rig
 from core.files.recording.set_listing import check_sizes, pictures_in
@@ -27,6 +33,13 @@ IMPORTED = "import.json"
 """In the set: what was imported, when, from where and by which rule; the latest last."""
 
 
+FRAME: Final = "frame of a film"
+Placed = Way | Literal["frame of a film"]
+"""How a picture got into the set."""
+_ROOM_LEFT = 200_000_000
+"""Bytes that a disk is left with: a measurement wants some, too."""
+
+
 @dataclass(frozen=True, slots=True)
 class Imported:
     """Result of an import: the set, how many files in which way, and notes.
@@ -35,7 +48,7 @@ class Imported:
     """
 
     folder: Path
-    ways: Mapping[Way, int]
+    ways: Mapping[Placed, int]
     notes: tuple[Message, ...]
     no_rig: Message | None = None
 
@@ -69,7 +82,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     require_free(plan, target, rig)
     log = earlier_imports(target)
     make_folder(target)
-    ways: dict[str, Way] = {}
+    ways: dict[str, Placed] = {}
     total = sum(len(one.files()) for one in plan.pictures)
     made: dict[Path, Path] = {}
     filled: dict[str, Path] = {}
@@ -85,10 +98,15 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
                 made[filled[part]] = target / part
             filled[part].mkdir()
             for one in pictures:
-                for name, source in one.files():
+                for name, source in one.files() if one.frame is None else ():
                     if not source.is_file():
                         raise InputError(MISSING, where=source)
                     ways[name] = link(source, filled[part] / name.removeprefix(f"{part}/"), symbolic=True)
+                    progress("importing", len(ways), total)
+            if part in plan.films:
+                frames = [one for one in pictures if one.frame is not None]
+                for name in _written(plan.films[part], frames, filled[part]):
+                    ways[name] = FRAME
                     progress("importing", len(ways), total)
         for beside, place in made.items():
             if place.is_dir():
@@ -101,7 +119,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
             remove_tree(beside, leave=True)
     if rig is not None:
         write_bytes(target / RIG, read_bytes(rig))
-    counts: Counter[Way] = Counter(ways.values())
+    counts: Counter[Placed] = Counter(ways.values())
     notes, no_rig = (*plan.notes, *_notes(counts)), None if (target / RIG).exists() else _NO_RIG
     imported = Imported(target, dict(counts), notes, no_rig)
     write_json(target / IMPORTED, {"imports": [*log, _record(plan, ways, imported.all_notes)]})
@@ -121,7 +139,9 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
                 todo=Message("import.advice_other_set", "name another set, or remove this folder first"),
             )
     kept = [path for part in (*PARTS, CHECK, KNOWN_PLANES) for path in pictures_in(target / part)]
-    check_sizes([*kept, *(path for one in plan.pictures for _, path in one.files())])
+    new = [path for one in plan.pictures if one.frame is None for _, path in one.files()]
+    check_sizes([*kept, *new], {film.path: film.size for film in plan.films.values()})
+    _require_room(plan, target)
     if rig is not None:
         read_rig(rig)
         if (target / RIG).exists() and not (target / RIG).samefile(rig):
@@ -130,6 +150,39 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
                 where=target / RIG,
                 todo=Message("import.advice_one_rig", "keep one of the two"),
             )
+
+
+def _require_room(plan: ImportPlan, target: Path) -> None:
+    """Raise InputError if the frames of the plan's films have no room on the disk of the set."""
+    wanted = sum(film.png_bytes for film in plan.films.values())
+    there = next(folder for folder in (target, *resolved(target).parents) if folder.is_dir())
+    free = shutil.disk_usage(there).free
+    if wanted and wanted + _ROOM_LEFT > free:
+        raise InputError(
+            Message(
+                "import.no_room",
+                "the frames take about {wanted_gb:.1f} GB, and {free_gb:.1f} GB are free",
+                wanted_gb=wanted / 1e9,
+                free_gb=free / 1e9,
+            ),
+            where=target,
+            todo=Message("advice.free_space_or_elsewhere", "free some space, or choose another folder"),
+        )
+
+
+def _written(film: Film, pictures: Sequence[ImportedPicture], beside: Path) -> Iterator[str]:
+    """Write the frames of a film into a folder, with its log; yields each name within the set."""
+    log = RecordingLog(beside)
+    try:
+        for one, (frame, picture) in zip(pictures, film_pictures(film), strict=True):
+            name = one.files()[0][0]
+            file = name.partition("/")[2]
+            write_bytes(beside / file, film_png(picture, film), sync=False)
+            if frame.time_s is not None:
+                log.add(LoggedFrame(file, frame.number, frame.time_s, dropped=0))
+            yield name
+    finally:
+        log.close()
 
 
 def earlier_imports(target: Path) -> list[Any]:
@@ -152,7 +205,7 @@ _NO_RIG = Message(
 )
 
 
-def _notes(ways: Mapping[Way, int]) -> tuple[Message, ...]:
+def _notes(ways: Mapping[Placed, int]) -> tuple[Message, ...]:
     notes = []
     if "symbolic link" in ways:
         notes.append(
@@ -175,7 +228,7 @@ def _notes(ways: Mapping[Way, int]) -> tuple[Message, ...]:
     return tuple(notes)
 
 
-def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...]) -> dict[str, Any]:
+def _record(plan: ImportPlan, ways: Mapping[str, Placed], notes: tuple[Message, ...]) -> dict[str, Any]:
     """One import as the log keeps it; every file with its place, so that its origin stays known."""
     taken = {name: one.taken_at for one in plan.pictures for name, _ in one.files()[:1]}
     request = plan.request
@@ -184,14 +237,27 @@ def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...
     return {
         "imported_at": datetime.now(UTC).astimezone().isoformat(timespec="seconds"),
         "version": __version__,
-        "from": {name: str(resolved(where.folder) / where.pattern) for name, where in asked.items() if where},
+        "from": {name: _place(where) for name, where in asked.items() if where},
+        "films": {part: _film_record(film) for part, film in plan.films.items()},
         "order": request.order.value,
         "rules": {part: as_json(rule) for part, rule in plan.rules.items()},
         "pictures": [
             {"name": name, "from": str(resolved(path)), "as": ways[name]}
             | ({"taken_at": at.isoformat()} if (at := taken.get(name)) else {})
+            | ({} if one.frame is None else {"frame": one.frame.number, "time_s": one.frame.time_s})
             for one in plan.pictures
             for name, path in one.files()
         ],
         "notes": [as_json(note) for note in notes],
     }
+
+
+def _place(where: Where) -> str:
+    folder = resolved(where.folder)
+    return str(folder / where.pattern if folder.is_dir() else folder)
+
+
+def _film_record(film: Film) -> dict[str, Any]:
+    """What a film was: of its loss what the frames say as well."""
+    lost = {} if film.loss is None else {"components": film.loss.components, "assumed": film.loss.assumed}
+    return {"from": str(resolved(film.path)), "coding": film.coding, "doubled": film.doubled, "lost": lost}

@@ -1,4 +1,4 @@
-"""Pictures in any folders as a recording set: what lies where, in which order, and which belong together.
+"""Pictures in any folders, and films, as a recording set: what lies where, in which order, and which belong together.
 
 Nothing is written here; `core.files.recording.import_pictures` does that, once a person has seen the plan.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import struct
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from enum import StrEnum
@@ -19,14 +19,26 @@ import numpy as np
 from PIL import Image
 
 from core.errors import InputError
+from core.files.film import Film, FilmFrame, Picture, film_png, is_film, read_film
+from core.files.jpeg import compression_by
 from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read, resolved
+from core.files.recording.laser_channel import LitPicture, against_background, laser_channel
 from core.files.recording.recording_set import CHECK, KNOWN_PLANES
-from core.files.recording.set_listing import OFF, check_sizes, is_off, notes_on_not_read, pictures_in, without_off
+from core.files.recording.set_listing import (
+    OFF,
+    check_sizes,
+    films_in,
+    is_off,
+    notes_on_not_read,
+    pictures_in,
+    without_off,
+)
 from core.image.stripes.exchanged import PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.messages import Message, plural_message
+from core.progress import Progress, silent
 
 _REFERENCE = "reference"
 _EXIF_TABLE, _TAKEN_AT, _TAKEN_AT_PART, _WRITTEN_AT = 0x8769, 0x9003, 0x9291, 0x0132
@@ -44,14 +56,17 @@ class Order(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """Pictures in `folder` whose names fit `pattern`: ``*`` stands for any text, ``?`` for one character."""
+    """Pictures in `folder` whose names fit `pattern`: ``*`` stands for any text, ``?`` for one character.
+
+    A film may lie there instead of pictures, or be `folder` itself.
+    """
 
     folder: Path
     pattern: str = "*"
 
     @classmethod
     def typed(cls, text: str) -> Where:
-        """Parse where pictures are, as typed: a folder, or folder and pattern of names, ``shots/laser_*.jpg``."""
+        """Parse where pictures are, as typed: a folder, folder and pattern, ``shots/laser_*.jpg``, or a film."""
         path = Path(text)
         if set("*?") & set(path.name) and not path.is_dir():
             return cls(path.parent, path.name)
@@ -85,7 +100,7 @@ class ImportRequest:
 class ImportedPicture:
     """View, pose or frame: its `name` in the `part` of the set, where it lies, its off picture, when it was taken.
 
-    `taken_at` is None unless pictures are ordered by time.
+    `taken_at` is None unless pictures are ordered by time. Of a film, which `source` is then, it is one `frame`.
     """
 
     part: str
@@ -93,21 +108,29 @@ class ImportedPicture:
     source: Path
     off: Path | None = None
     taken_at: datetime | None = None
+    frame: FilmFrame | None = None
+
+    @property
+    def shown_name(self) -> str:
+        """Name of the source to show, of a film with the frame's number from 1."""
+        return self.source.name if self.frame is None else f"{self.source.name} {self.frame.number + 1}"
 
     def files(self) -> tuple[tuple[str, Path], ...]:
         """Pairs (name within the set, source) of the picture, and of its partner with the fan off, if any."""
-        on = (f"{self.part}/{self.name}{self.source.suffix}", self.source)
+        ending = self.source.suffix if self.frame is None else ".png"
+        on = (f"{self.part}/{self.name}{ending}", self.source)
         return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{OFF}{self.off.suffix}", self.off))
 
 
 @dataclass(frozen=True, slots=True)
 class ImportPlan:
-    """Plan of an import: every picture in its order, by which rule, for each part, and notes."""
+    """Plan of an import: every picture in its order, by which rule, for each part, films by part, and notes."""
 
     request: ImportRequest
     pictures: tuple[ImportedPicture, ...]
     rules: Mapping[str, Message] = field(default_factory=dict)
     notes: tuple[Message, ...] = ()
+    films: Mapping[str, Film] = field(default_factory=dict)
 
     @property
     def parts(self) -> dict[str, tuple[ImportedPicture, ...]]:
@@ -116,14 +139,14 @@ class ImportPlan:
         return {part: tuple(one for one in self.pictures if one.part == part) for part in names}
 
 
-def plan_import(request: ImportRequest) -> ImportPlan:
-    """Plan which picture gets which part and name in a recording set; reads picture sizes and three pairs.
+def plan_import(request: ImportRequest, progress: Progress = silent) -> ImportPlan:
+    """Plan which picture gets which part and name in a recording set; reads picture sizes, three pairs, and films.
 
     Raises
     ------
     InputError
-        If nothing is asked for, a folder or its pictures are not there, the pictures are not all of one size, or
-        nothing says which pictures have the fan on.
+        If nothing is asked for, a folder or its pictures are not there, the pictures are not all of one size, a film
+        cannot be read, or nothing says which pictures have the fan on.
     """
     poses, check = (request.planes, request.planes_off), (request.check, request.check_off)
     asked = (request.camera, *poses, request.scan, request.reference, *check, request.known_planes)
@@ -145,18 +168,55 @@ def plan_import(request: ImportRequest) -> ImportPlan:
             where=request.reference,
             todo=Message("import.advice_scan", "name the folder of the scan, too"),
         )
-    found = [
-        _views(request.camera, request.order) if request.camera else None,
-        _poses("planes", request.planes, request.planes_off, request.order) if request.planes else None,
-        _frames(request.scan, request.reference, request.order) if request.scan else None,
-        _poses(CHECK, request.check, request.check_off, request.order) if request.check else None,
-        _boards(request.known_planes) if request.known_planes else None,
-    ]
-    parts = [part for part in found if part is not None]
-    pictures = tuple(one for part in parts for one in part.pictures)
-    check_sizes(list(dict.fromkeys(path for one in pictures for _, path in one.files())))
-    rules = {part.pictures[0].part: part.rule for part in parts}
-    return ImportPlan(request, pictures, rules, tuple(note for part in parts for note in part.notes))
+    found: list[_Part] = []
+    for part, where, off in (
+        ("camera", request.camera, None),
+        ("planes", *poses),
+        ("scan", request.scan, None),
+        (CHECK, *check),
+    ):
+        film = None if where is None else film_at(where)
+        if off is not None and (film is not None or film_at(off) is not None):
+            raise InputError(
+                Message("import.film_with_off", "frames of a film find no partners with the fan on or off"),
+                where=off,
+                todo=Message("import.advice_film_poses", "import the film alone, or its frames as pictures"),
+            )
+        if film is not None:
+            found.append(_of_film(part, film, request.reference, progress))
+        elif where is not None:
+            found.append(_of_pictures(part, where, request, off))
+    if request.known_planes is not None:
+        found.append(_boards(request.known_planes))
+    pictures = tuple(one for part in found for one in part.pictures)
+    films = {part.pictures[0].part: part.film for part in found if part.film is not None}
+    paths = dict.fromkeys(path for one in pictures if one.frame is None for _, path in one.files())
+    check_sizes(list(paths), {film.path: film.size for film in films.values()})
+    rules = {part.pictures[0].part: part.rule for part in found}
+    return ImportPlan(request, pictures, rules, tuple(note for part in found for note in part.notes), films)
+
+
+def film_at(where: Where) -> Path | None:
+    """Find the film at a place: itself, or the only one in a folder without pictures; None for a folder of pictures.
+
+    Raises
+    ------
+    InputError
+        If several films lie there and nothing says which.
+    """
+    if not where.folder.is_dir():
+        return where.folder if where.folder.is_file() and is_film(where.folder) else None
+    if any(_matched(where.pattern, path.name) is not None for path in pictures_in(where.folder)):
+        return None
+    films = [path for path in films_in(where.folder) if _matched(where.pattern, path.name) is not None]
+    if len(films) > 1:
+        raise InputError(
+            Message("import.several_films", "there are {n} films, as {names}", n=len(films),
+                    names=tuple(path.name for path in films[:_NAMES_SHOWN])),
+            where=where,
+            todo=Message("import.advice_one_film", "name one of them: a part is made of one film"),
+        )  # fmt: skip
+    return films[0] if films else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +224,71 @@ class _Part:
     pictures: tuple[ImportedPicture, ...]
     rule: Message
     notes: tuple[Message, ...] = ()
+    film: Film | None = None
+
+
+def _of_pictures(part: str, where: Where, request: ImportRequest, off: Where | None) -> _Part:
+    if part == "camera":
+        return _views(where, request.order)
+    if part == "scan":
+        return _frames(where, request.reference, request.order)
+    return _poses(part, where, off, request.order)
+
+
+def _of_film(part: str, path: Path, reference: Path | None, progress: Progress) -> _Part:
+    """The frames of a film; a scan's reference may be a picture beside them."""
+    film, sample = read_film(path, progress)
+    digits = len(str(film.frames[-1].number))
+    stem = path.stem.lstrip(".") or "film"
+    pictures = [ImportedPicture(part, f"{stem}-{frame.number:0{digits}d}", path, frame=frame) for frame in film.frames]
+    notes = list(_notes_on_film(film))
+    if part == "scan":
+        if reference is not None:
+            pictures.insert(0, ImportedPicture(part, _REFERENCE, _existing(reference)))
+        else:
+            notes += proposed_channel(film, sample)
+    rule = Message("import.frames_of_film", "the frames of the film {name} in their order", name=path.name)
+    return _Part(tuple(pictures), rule, tuple(notes), film)
+
+
+def _notes_on_film(film: Film) -> Iterator[Message]:
+    """What is to be known of a film: frames that are the one before again, and what its coding has lost."""
+    if film.doubled:
+        yield plural_message(
+            "import.film_doubled",
+            "{n} frame of {name} is the one before again, in every pixel, and is left out.",
+            "{n} frames of {name} are the one before again, in every pixel, and are left out.",
+            n=film.doubled,
+            name=film.path.name,
+        )
+    if film.loss is None:
+        return
+    grey = compression_by(film.loss.components).grey
+    if film.loss.assumed:
+        yield Message(
+            "import.film_lossy_assumed",
+            "{name} is coded with loss ({coding}), how much is not known: {grey:.1f} grey levels are assumed, and go "
+            "into σ. Record without loss, or as MJPEG, which tells.",
+            name=film.path.name,
+            coding=film.coding,
+            grey=grey,
+        )
+    else:
+        yield Message(
+            "import.film_lossy",
+            "{name} is coded with loss ({coding}): {grey:.1f} grey levels, which go into σ.",
+            name=film.path.name,
+            coding=film.coding,
+            grey=grey,
+        )
+
+
+def proposed_channel(film: Film, sample: Sequence[Picture]) -> Iterator[Message]:
+    """Propose the channel that shows the hand-held laser best in a sample of a film's pictures, told as a note."""
+    if film.grey:
+        return
+    frames = [LitPicture(picture, data=film_png(picture, film)) for picture in sample]
+    yield from laser_channel(against_background(frames)).proposal(film.path.name)
 
 
 def _boards(where: Where) -> _Part:
@@ -187,8 +312,8 @@ def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
     files, notes = _listed(where)
     if reference is None:
         reference = next((path for path in files if path.stem.lower() == _REFERENCE), None)
-    elif not reference.is_file():
-        raise InputError(Message("import.no_reference", "there is no such picture"), where=reference)
+    else:
+        reference = _existing(reference)
     frames = [path for path in files if reference is None or resolved(path) != resolved(reference)]
     if not frames:
         raise InputError(Message("import.no_frames", "there are no frames beside the reference"), where=where)
@@ -200,6 +325,12 @@ def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
     if reference is not None:
         pictures.insert(0, ImportedPicture("scan", _REFERENCE, reference))
     return _Part(tuple(pictures), rule, (*notes, *more))
+
+
+def _existing(reference: Path) -> Path:
+    if not reference.is_file():
+        raise InputError(Message("import.no_reference", "there is no such picture"), where=reference)
+    return reference
 
 
 def _poses(part: str, on: Where, off: Where | None, order: Order) -> _Part:
@@ -234,7 +365,7 @@ def _listed(where: Where) -> tuple[list[Path], tuple[Message, ...]]:
     folder = where.folder
     if not folder.is_dir():
         what = (
-            Message("import.file_not_folder", "is a file, not a folder or a pattern of names")
+            Message("import.file_not_folder", "is a file, not a folder, a pattern of names, or a film")
             if folder.exists()
             else Message("source.no_such_folder", "there is no such folder")
         )
@@ -253,7 +384,9 @@ def _listed(where: Where) -> tuple[list[Path], tuple[Message, ...]]:
             if pictures
             else Message("import.no_pictures", "there are no pictures in this folder"),
             where=where,
-            todo=Message("import.advice_formats", "pictures are png, tif, bmp, jpg and pgm"),
+            todo=Message(
+                "import.advice_formats", "pictures are png, tif, bmp, jpg and pgm, films avi, mp4, mov, mkv and gif"
+            ),
         )
     return fitting, notes_on_not_read(folder, lambda name: _matched(where.pattern, name) is not None)
 

@@ -269,7 +269,7 @@ def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Mes
     if unread:
         todo = Message(
             "advice.convert_pictures",
-            "convert {names} to png, a film picture by picture",
+            "convert {names} to png, or import the frames of a film",
             names=unread[:NAMES_SHOWN],
         )
     return InputError(what, where=recording_set.where(part), todo=todo)

@@ -6,7 +6,7 @@ import contextlib
 import re
 import struct
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,6 +14,7 @@ from pathlib import Path
 from PIL import Image
 
 from core.errors import InputError
+from core.files.film import FILMS, is_film
 from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import is_picture
@@ -59,6 +60,14 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
     InputError if it cannot be listed.
     """
     return tuple(path for path in _all_in(folder) if not is_further(path))
+
+
+def films_in(folder: Path) -> tuple[Path, ...]:
+    """List the films in a folder by name, those that are known by their endings; InputError if it cannot be listed."""
+    try:
+        return tuple(sorted(path for path in folder.iterdir() if path.suffix.lower() in FILMS and is_film(path)))
+    except OSError as error:
+        raise cannot_read(folder, error) from error
 
 
 def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[str, ...]:
@@ -199,9 +208,12 @@ def taken_at(paths: Sequence[Path]) -> datetime:
     return datetime.fromtimestamp(max(times), UTC) if times else datetime.now(UTC)
 
 
-def check_sizes(paths: Sequence[Path]) -> None:
-    """Raise InputError, naming those that differ, unless all pictures have one size; reads their heads alone."""
-    sizes = {path: size for path in paths if (size := _size(path)) is not None}
+def check_sizes(paths: Sequence[Path], films: Mapping[Path, tuple[int, int]] | None = None) -> None:
+    """Raise InputError, naming those that differ, unless all pictures have one size; reads their heads alone.
+
+    The sizes of `films` count as well, each as one picture.
+    """
+    sizes = dict(films or {}) | {path: size for path in paths if (size := _size(path)) is not None}
     if len(set(sizes.values())) <= 1:
         return
     usual = Counter(sizes.values()).most_common(1)[0][0]
