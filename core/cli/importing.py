@@ -34,7 +34,7 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
     else:
         with bar() as progress:
             imported = import_pictures(plan, target, rig, progress)
-    notes = plan.notes if imported is None else imported.all_notes
+    notes = (*plan.notes, *plan.proposals) if imported is None else imported.all_notes
     if as_json:
         output.print_json(_values(plan, imported, notes))
         return

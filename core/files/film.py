@@ -37,8 +37,8 @@ from core.progress import Progress, silent
 
 FILMS = frozenset({".avi", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".gif", ".apng"})
 """Endings (lower case) of the files that are films by their names."""
-_PERHAPS_MOVING = frozenset({".png", ".webp"})
-"""Endings of pictures, some of which hold several frames."""
+PERHAPS_MOVING = frozenset({".png", ".webp"})
+"""Endings (lower case) of pictures, some of which hold several frames."""
 _MISSING_AT_MOST = 2
 """Frames fewer than a film says it has that are no damage: some programs count one that is never shown."""
 _ENCODED_EVERY = 32
@@ -91,7 +91,7 @@ class Film:
 def is_film(path: Path) -> bool:
     """Whether a file is a film by its name, or a PNG or WebP that holds several frames."""
     ending = path.suffix.lower()
-    if path.name.startswith(".") or ending not in _PERHAPS_MOVING:
+    if path.name.startswith(".") or ending not in PERHAPS_MOVING:
         return ending in FILMS and not path.name.startswith(".")
     try:
         with Image.open(path, formats=("PNG", "WEBP")) as film:
@@ -163,11 +163,18 @@ def film_png(picture: Picture, film: Film) -> bytes:
 
 
 def film_picture(path: Path, number: int) -> Picture:
-    """Read one frame (H, W, 3) of a film by its number from 0, in OpenCV's order of colours; InputError if it fails."""
-    for at, (_, picture) in enumerate(_opened(path).shown):
-        if at == number:
-            return picture
-    raise _ends_early(path, number, number + 1)
+    """Read one frame (H, W, 3) of a film by its number from 0, in OpenCV's order of colours, without those before it.
+
+    For looking at: of films whose list of frames is not in order it may be a neighbour.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    for _, picture in _opened(path, number).shown:
+        return picture
+    raise _ends_early(path, number, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,8 +187,8 @@ class _Opened:
     shown: Iterator[_Shown]
 
 
-def _opened(path: Path) -> _Opened:
-    """Open a film; what is inside decides by what it is decoded, so that nothing but a film gets to a decoder."""
+def _opened(path: Path, first: int = 0) -> _Opened:
+    """Open a film at its frame `first`; what is inside decides on the decoder, so that none gets anything but films."""
     check_file(path, FILM_BYTES)
     try:
         with path.open("rb") as file:
@@ -189,13 +196,13 @@ def _opened(path: Path) -> _Opened:
     except OSError as error:
         raise cannot_read(path, error) from error
     if head.startswith((b"GIF8", b"\x89PNG")) or (head.startswith(b"RIFF") and head[8:12] == b"WEBP"):
-        return _by_pillow(path)
+        return _by_pillow(path, first)
     if (head.startswith(b"RIFF") and head[8:12] == b"AVI ") or head.startswith(_EBML) or head[4:8] in _FIRST_BOXES:
-        return _by_ffmpeg(path)
+        return _by_ffmpeg(path, first)
     raise _unreadable(path)
 
 
-def _by_ffmpeg(path: Path) -> _Opened:
+def _by_ffmpeg(path: Path, first: int) -> _Opened:
     capture = cv2.VideoCapture(str(resolved(path)), cv2.CAP_FFMPEG)
     if not capture.isOpened():
         raise _ends_early(path, 0, 0) if _is_cut(path) else _unreadable(path)
@@ -207,6 +214,8 @@ def _by_ffmpeg(path: Path) -> _Opened:
 
     def shown() -> Iterator[_Shown]:
         try:
+            if first:
+                capture.set(cv2.CAP_PROP_POS_FRAMES, first)
             while True:
                 read, picture = capture.read()
                 if not read:
@@ -218,7 +227,7 @@ def _by_ffmpeg(path: Path) -> _Opened:
     return _Opened(max(told, 0), coding, _loss_of(path, coding), shown())
 
 
-def _by_pillow(path: Path) -> _Opened:
+def _by_pillow(path: Path, first: int) -> _Opened:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # cameras have more pixels than it allows
@@ -233,7 +242,7 @@ def _by_pillow(path: Path) -> _Opened:
         time_ms = 0.0
         with film:
             check_pixels(*film.size, path)
-            for number in count():
+            for number in count(first):
                 try:
                     film.seek(number)
                 except EOFError:

@@ -120,7 +120,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     if rig is not None:
         write_bytes(target / RIG, read_bytes(rig))
     counts: Counter[Placed] = Counter(ways.values())
-    notes, no_rig = (*plan.notes, *_notes(counts)), None if (target / RIG).exists() else _NO_RIG
+    notes, no_rig = (*plan.notes, *plan.proposals, *_notes(counts)), None if (target / RIG).exists() else _NO_RIG
     imported = Imported(target, dict(counts), notes, no_rig)
     write_json(target / IMPORTED, {"imports": [*log, _record(plan, ways, imported.all_notes)]})
     return imported

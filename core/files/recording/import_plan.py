@@ -124,13 +124,17 @@ class ImportedPicture:
 
 @dataclass(frozen=True, slots=True)
 class ImportPlan:
-    """Plan of an import: every picture in its order, by which rule, for each part, films by part, and notes."""
+    """Plan of an import: every picture in its order, by which rule, for each part, films by part, and notes.
+
+    `proposals` tell what was chosen for the frames of a film; nothing is wrong with them.
+    """
 
     request: ImportRequest
     pictures: tuple[ImportedPicture, ...]
     rules: Mapping[str, Message] = field(default_factory=dict)
     notes: tuple[Message, ...] = ()
     films: Mapping[str, Film] = field(default_factory=dict)
+    proposals: tuple[Message, ...] = ()
 
     @property
     def parts(self) -> dict[str, tuple[ImportedPicture, ...]]:
@@ -193,7 +197,8 @@ def plan_import(request: ImportRequest, progress: Progress = silent) -> ImportPl
     paths = dict.fromkeys(path for one in pictures if one.frame is None for _, path in one.files())
     check_sizes(list(paths), {film.path: film.size for film in films.values()})
     rules = {part.pictures[0].part: part.rule for part in found}
-    return ImportPlan(request, pictures, rules, tuple(note for part in found for note in part.notes), films)
+    notes = tuple(note for part in found for note in part.notes)
+    return ImportPlan(request, pictures, rules, notes, films, tuple(one for part in found for one in part.proposals))
 
 
 def film_at(where: Where) -> Path | None:
@@ -225,6 +230,7 @@ class _Part:
     rule: Message
     notes: tuple[Message, ...] = ()
     film: Film | None = None
+    proposals: tuple[Message, ...] = ()
 
 
 def _of_pictures(part: str, where: Where, request: ImportRequest, off: Where | None) -> _Part:
@@ -241,14 +247,13 @@ def _of_film(part: str, path: Path, reference: Path | None, progress: Progress) 
     digits = len(str(film.frames[-1].number))
     stem = path.stem.lstrip(".") or "film"
     pictures = [ImportedPicture(part, f"{stem}-{frame.number:0{digits}d}", path, frame=frame) for frame in film.frames]
-    notes = list(_notes_on_film(film))
-    if part == "scan":
-        if reference is not None:
-            pictures.insert(0, ImportedPicture(part, _REFERENCE, _existing(reference)))
-        else:
-            notes += proposed_channel(film, sample)
+    proposals: tuple[Message, ...] = ()
+    if part == "scan" and reference is not None:
+        pictures.insert(0, ImportedPicture(part, _REFERENCE, _existing(reference)))
+    elif part == "scan":
+        proposals = proposed_channel(film, sample)
     rule = Message("import.frames_of_film", "the frames of the film {name} in their order", name=path.name)
-    return _Part(tuple(pictures), rule, tuple(notes), film)
+    return _Part(tuple(pictures), rule, tuple(_notes_on_film(film)), film, proposals)
 
 
 def _notes_on_film(film: Film) -> Iterator[Message]:
@@ -283,12 +288,12 @@ def _notes_on_film(film: Film) -> Iterator[Message]:
         )
 
 
-def proposed_channel(film: Film, sample: Sequence[Picture]) -> Iterator[Message]:
-    """Propose the channel that shows the hand-held laser best in a sample of a film's pictures, told as a note."""
+def proposed_channel(film: Film, sample: Sequence[Picture]) -> tuple[Message, ...]:
+    """Propose the channel that shows the hand-held laser best in a sample of a film's pictures; () for grey."""
     if film.grey:
-        return
+        return ()
     frames = [LitPicture(picture, data=film_png(picture, film)) for picture in sample]
-    yield from laser_channel(against_background(frames)).proposal(film.path.name)
+    return laser_channel(against_background(frames)).proposal(film.path.name)
 
 
 def _boards(where: Where) -> _Part:

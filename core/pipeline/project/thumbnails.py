@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from core.acquire.channel import Channel
 from core.acquire.folder import read_ahead
+from core.acquire.grey import to_grey
 from core.errors import InputError
+from core.files.film import film_picture
 from core.files.pictures import read_picture
 from core.image.mosaic import Pattern
 from core.pipeline.live.display import Display
@@ -35,6 +37,17 @@ def display_picture(
         If it cannot be read.
     """
     return Display(width_px).reduced(read_picture(path, channel, mosaic))
+
+
+def display_frame(path: Path, number: int, width_px: int, progress: Progress = silent) -> tuple[Thumbnail, int]:
+    """Read the frame `number` from 0 of a film in 8 bit, reduced by a whole factor; return it and the factor.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    return Display(width_px).reduced(to_grey(film_picture(path, number)))
 
 
 def thumbnails(

@@ -57,9 +57,9 @@ def test_the_frames_of_a_film_are_written_with_their_numbers_and_times(tmp_path,
 
 def test_doubled_frames_are_told_and_the_lasers_channel_is_proposed_as_it_will_be_looked_at(tmp_path, film):
     plan = plan_import(ImportRequest(scan=Where(film)))
-    assert codes(plan.notes) == ["import.film_doubled", "import.channel_proposed"]
+    assert codes((*plan.notes, *plan.proposals)) == ["import.film_doubled", "import.channel_proposed"]
     assert plan.notes[0].values["n"] == 1
-    proposed = plan.notes[1].values
+    proposed = plan.proposals[0].values
     imported(film, tmp_path / "set")
     chosen = PictureReader(open_set(tmp_path / "set")).laser_channel("scan")
     assert chosen.channel == "red"
@@ -69,7 +69,7 @@ def test_doubled_frames_are_told_and_the_lasers_channel_is_proposed_as_it_will_b
 
 def test_a_laser_of_another_colour_is_found(tmp_path):
     path = write_film(tmp_path / "a.avi", sweep(colour=0))
-    assert str(plan_import(ImportRequest(scan=Where(path))).notes[0].values["channel"]) == "blue"
+    assert str(plan_import(ImportRequest(scan=Where(path))).proposals[0].values["channel"]) == "blue"
 
 
 def test_a_channel_that_is_stated_is_the_one(tmp_path, film):
@@ -81,7 +81,7 @@ def test_a_channel_that_is_stated_is_the_one(tmp_path, film):
 
 def test_of_a_grey_film_no_channel_is_proposed(tmp_path):
     grey = write_film(tmp_path / "grey.avi", [np.repeat(one[:, :, 2:], 3, axis=2) for one in sweep()])
-    assert plan_import(ImportRequest(scan=Where(grey))).notes == ()
+    assert plan_import(ImportRequest(scan=Where(grey))).proposals == ()
 
 
 def test_the_loss_of_a_film_is_told_and_goes_with_its_frames(tmp_path):

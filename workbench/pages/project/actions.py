@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.acquire.source import Step
 from core.errors import InputError
+from core.files.film import is_film
 from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import (
     OPENER,
@@ -81,9 +82,13 @@ class ProjectActions(QObject):
 
         The open project measures its parts then; without one, a project that does is made.
         """
+        self._import(None)
+
+    def _import(self, film: Path | None) -> None:
+        """Ask where pictures are; a film that is named is that of a scan."""
         folder = self.model.folder
         base, name = (folder, "imported") if folder is not None else (self.bench.settings.projects_folder, "set")
-        dialog = ImportDialog(self.bench, free_folder(base, name), self._window)
+        dialog = ImportDialog(self.bench, free_folder(base, name), self._window, film)
         dialog.imported.connect(lambda imported, plan: self._use_imported(imported.folder, tuple(plan.parts), folder))
         dialog.open()
 
@@ -107,7 +112,7 @@ class ProjectActions(QObject):
         self.go_to.emit("scan" if parts[0] == "check" else parts[0])
 
     def open_dropped(self, path: Path) -> None:
-        """Open a dropped file or folder: a project, a packed project, an earlier version, or a recording set."""
+        """Open a dropped file or folder: a project, a packed one, an earlier version, a recording set, or a film."""
         path = path.resolve()
         if path.suffix == OPENER and not path.is_dir():
             path = path.parent
@@ -119,6 +124,8 @@ class ProjectActions(QObject):
             self.open_version(path)
         elif (path / SET).exists() or path.name == SET:
             self.open_set(path.parent if path.name == SET else path)
+        elif path.is_file() and is_film(path):
+            self._import(path)
         else:
             self.bench.notices.error(
                 tr("{path}: is neither a project (project.json) nor a recording set (rig.toml).", path=path)

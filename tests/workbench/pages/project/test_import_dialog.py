@@ -7,9 +7,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QWidget
 
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
+from tests.films import sweep, write_film
 from tests.workbench.technician import Technician
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.sources import folder_of
@@ -25,6 +29,11 @@ def shots(tmp_path: Path) -> Path:
             picture[:, 30:34] = light
             cv2.imwrite(str(folder / f"{kind}_{number}.png"), picture)
     return folder
+
+
+@pytest.fixture
+def film(tmp_path: Path) -> Path:
+    return write_film(tmp_path / "hand.avi", sweep())
 
 
 def dialog_of(technician: Technician) -> ImportDialog:
@@ -86,5 +95,59 @@ def test_what_cannot_be_understood_is_told_in_the_dialog(technician: Technician,
     dialog.planes.setText(str(shots))
     technician.until(lambda: "laser_*" in dialog.words.text(), "the sentence")
     assert not dialog.do_import.isEnabled()
+    dialog.reject()
+    technician.idle()
+
+
+def drop(path: Path, on: QWidget) -> None:
+    """Drop a path on a widget, as a file manager does."""
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(path))])
+    action, button, keys = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    QApplication.sendEvent(on, QDragEnterEvent(QPoint(5, 5), action, data, button, keys))
+    QApplication.sendEvent(on, QDropEvent(QPointF(5, 5), action, data, button, keys))
+
+
+def test_a_film_dropped_on_a_field_is_shown_frame_by_frame_and_becomes_the_scan(
+    technician: Technician, film: Path, tmp_path: Path
+) -> None:
+    dialog = dialog_in_project(technician, tmp_path / "block")
+    drop(film, dialog.scan)
+    assert dialog.scan.text() == str(film)
+    technician.until(dialog.do_import.isEnabled, "the preview")
+    assert cells(dialog)[6] == ("scan/hand-06.png", "hand.avi 7", "")
+    assert "the frames of the film hand.avi" in dialog.words.text()
+    assert "stands out best in the red channel" in dialog.words.text() and "⚠" not in dialog.words.text()
+    dialog.table.set_current_row(6)
+    technician.until(lambda: dialog.on.has_picture, "the frame")
+    dialog.do_import.click()
+    technician.until(lambda: technician.window.current == "scan", "the page of the scan")
+    folder = folder_of(technician.model, "scan")
+    assert folder is not None and len(list(folder.glob("*.png"))) == 12
+    technician.idle()
+
+
+def test_a_film_dropped_on_the_window_is_asked_about(technician: Technician, film: Path) -> None:
+    technician.window.projects.open_dropped(film)
+    dialog = technician.window.findChildren(ImportDialog)[-1]
+    assert dialog.scan.text() == str(film)
+    dialog.reject()
+    technician.idle()
+
+
+def test_cancel_ends_an_import_and_leaves_the_dialog(technician: Technician, tmp_path: Path) -> None:
+    film = write_film(tmp_path / "long.avi", sweep(150, size=(640, 480)))
+    dialog = dialog_in_project(technician, tmp_path / "block")
+    dialog.scan.setText(str(film))
+    technician.until(lambda: dialog.bar.maximum() == 150 and not dialog.bar.isHidden(), "how far the film is read")
+    technician.until(dialog.do_import.isEnabled, "the preview")
+    assert dialog.bar.isHidden()
+    dialog.do_import.click()
+    technician.until(lambda: not dialog.bar.isHidden(), "how far the import is")
+    assert not dialog.scan.isEnabled()
+    dialog.buttons.button(QDialogButtonBox.StandardButton.Cancel).click()
+    technician.until(dialog.do_import.isEnabled, "the dialog again")
+    assert not (tmp_path / "block" / "imported" / "scan").exists()
+    assert not list((tmp_path / "block").glob("imported/.*"))
     dialog.reject()
     technician.idle()
