@@ -20,8 +20,12 @@ from core.messages import Message
 OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
 STUDIES = "studies"
 """Our own wing that reads studies."""
-OUR_COMMANDS: Mapping[str, str] = {"plan": "rig_planning", "study": STUDIES}
+GEOMETRY = "geometry"
+"""Our own wing that compares the part with other surfaces."""
+OUR_COMMANDS: Mapping[str, str] = {"compare": GEOMETRY, "plan": "rig_planning", "study": STUDIES}
 """The commands of our own wings, and which wing each is of: known where the wing's folder is gone, too."""
+OUR_EXPORTS: Mapping[str, str] = {"compared": GEOMETRY, "compared-csv": GEOMETRY}
+"""The kinds of export of our own wings, likewise."""
 
 NO_READER_OF_STUDIES = Message(
     "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
@@ -46,7 +50,7 @@ class ReportSection:
         far, that gives the `core.report.facts.fact.Fact` of the section. Without facts the section is not printed.
     below_results
         "": it stands behind the checks by artefacts. Else its facts stand below the results on the first page, and by
-        this name among those that tables of results hand over.
+        this name among the facts of the XLSX workbook.
     """
 
     title: str

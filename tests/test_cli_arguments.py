@@ -28,7 +28,6 @@ WITH_A_FOLDER = {
     "profile": (WRONG, *OUT),
     "gauge": (WRONG, *OUT),
     "inspect": (WRONG, "--plan", "{out}/plan.toml"),
-    "compare": (WRONG, WRONG),
     "mesh": (WRONG, "--format", "stl"),
     "report": (WRONG, *OUT),
     "export": (WRONG, "--format", "csv"),

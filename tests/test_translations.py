@@ -175,7 +175,7 @@ ALLOWED = {
     "core/files/exchange/dcc.py": "what the file says to other programs",
     "core/files/exchange/e57.py": "what the file says to other programs",
     "core/files/exchange/opencv_calibration.py": "what the file says to other programs",
-    "core/files/results/comparison_file.py": "what the file says to other programs",
+    "core/wings/geometry/comparison/comparison_file.py": "what the file says to other programs",
     "core/files/results/frame_text.py": "what the file says to other programs",
     "core/files/results/mesh_export.py": "what the file says to other programs",
     "core/files/results/ply.py": "what the file says to other programs",

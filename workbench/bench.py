@@ -20,7 +20,7 @@ WRITING = frozenset(
         *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_PLANES, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
         *(jobs.CHECK_RIG, jobs.COMPARE_WITH_ARTEFACT, jobs.MEASURE_PROFILES, jobs.MEASURE_GAUGE),
         *(jobs.MEASURE_FEATURES, jobs.MEASURE_ALL, jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE),
-        *(jobs.ADD_RECORDING, jobs.SHOW_COMPARISON, jobs.FORGET_COMPARISON, jobs.KEEP_IMPORTED_CAMERA),
+        *(jobs.ADD_RECORDING, jobs.KEEP_IMPORTED_CAMERA),
     }
 )
 """Jobs that put something into the folder of the open project: none is done where another program has it open.

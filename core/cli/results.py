@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -19,25 +18,20 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
-from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
 from core.files.results.export_list import exports
 from core.files.results.folder_results import read_results
 from core.files.results.inspection_file import inspection_values
-from core.inspect.comparison import ComparisonScales
 from core.inspect.conformity import Verdict
 from core.inspect.evaluate import Inspection
 from core.messages import Message, label, visible
-from core.pipeline.project.comparison import compare_project
 from core.pipeline.project.export import export_results, import_camera, with_template
 from core.pipeline.steps.brought_sections import with_studies
-from core.pipeline.steps.compare_step import compare_step
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step
 from core.progress import Progress
 from core.report.content import ReportContent
-from core.report.facts.of_comparison import comparison_facts
 from core.report.facts.of_features import HEADS, characteristic_cells
 from core.report.template import LANGUAGES, PAPERS, Paper
 from core.report.wording import grouped, shown_name
@@ -81,32 +75,6 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
         table.add_row(*map(visible, (shown_name(row, words), *characteristic_cells(row, words))))
     output.console().print(table)
     output.print_rows([], (*inspection.problems, *inspection.notes), files)
-
-
-def run_compare(
-    results: Path,
-    other: Path,
-    align: str,
-    asked: tuple[float, float, float | None],
-    to: Path | None,
-    progress: Progress,
-) -> Shown:
-    """Compare a scan with another surface and write the result; `asked`: diameter, reach, registration in mm."""
-    diameter, reach, registration = asked
-    for name, value, least in (
-        ("--diameter", diameter, 0.0),
-        ("--reach", reach, 1e-6),
-        ("--registration", registration, 0.0),
-    ):
-        if value is not None and not least <= value < math.inf:
-            raise InputError(Message("comparison.length", "must be a length in mm"), where=name)
-    scales = ComparisonScales(diameter, reach, registration)
-    if to is None and is_project(results):
-        made, written = compare_project(results, other, align, scales, progress)
-    else:
-        with alone_in(results) if results.is_dir() else nullcontext():
-            made, written = compare_step(results, other, align, scales, to, progress)
-    return Shown(output.fact_rows(comparison_facts(made.summary)), made.summary.values(), files=written)
 
 
 def run_mesh(

@@ -254,7 +254,7 @@ class ReportContent:
     deviations
         Comparisons with nominal surfaces.
     below_results
-        Of the wings, what stands below the results, each by the name under which tables of results have it.
+        Of the wings, what stands below the results, each by the name under which the workbook has it.
     studies
         Studies of the way of measuring, and of series of parts.
     check

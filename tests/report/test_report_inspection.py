@@ -13,7 +13,6 @@ import pytest
 from matplotlib.text import Text
 from pypdf import PdfReader
 
-from core.files.results.comparison_file import ChangedPart, ComparisonFile
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits, Verdict
 from core.inspect.plan.control_frame import ControlFrame
@@ -22,9 +21,8 @@ from core.inspect.results import Contribution
 from core.messages import label, plain
 from core.progress import silent
 from core.report import pdf
-from core.report.content import MOST_CALLOUTS, BroughtSection, ReportedStudy
+from core.report.content import MOST_CALLOUTS, ReportedStudy
 from core.report.drawings import drawings
-from core.report.facts.of_comparison import comparison_facts
 from core.report.layout.style import BOLD, SANS, ReportLook, words_width
 from core.report.pdf import build_report
 from core.report.plots.charts import callouts, surface_figure
@@ -99,19 +97,6 @@ def test_very_many_degrees_of_freedom_are_not_counted_out(quick):
     many = replace(first, budget=tuple(replace(row, dof=4e5) for row in first.budget))
     text = words(build_report(replace(quick, inspected=(many, *others))))
     assert "Effective degrees of freedom ν_eff > 1000" in text
-
-
-def test_a_comparison_is_told_in_figures(quick):
-    changed, same = ChangedPart(0.25, -0.1, -0.12), ChangedPart(0.0, math.nan, math.nan)
-    found = ComparisonFile(
-        "before.ply", "best fit", 1300, changed, same, lod95_mm=0.06, diameter_mm=12.0, reach_mm=5.0,
-        registration_mm=0.002, calibration_id="",
-    )  # fmt: skip
-    section = BroughtSection("Comparison", comparison_facts(found))
-    text = words(build_report(replace(quick, below_results={"comparison": section}))).replace("\u00a0", " ")
-    assert "Compared with Aligned Less material More material before.ply best fit" in text
-    assert "25.0 % of the places, mean −0.100 mm, at most −0.120 mm" in text and "nowhere significant" in text
-    assert "0.060 mm 0.0020 mm 1 300 12 mm" in text
 
 
 def test_calibrations_have_id_age_and_hash(data):

@@ -4,6 +4,7 @@ import io
 import sys
 
 import pytest
+from openpyxl import load_workbook
 from pypdf import PdfReader
 
 from core.door import WITHOUT, by_folders
@@ -147,7 +148,7 @@ WING = Wing("count", sections=(ReportSection("Counted", "lab_count:told", "count
 
 
 def counting(install, rows="ROWS"):
-    install("lab-count", {"lab_count": EXPORTS.format(rows=rows)}, {"trisect.wings": {"count": "lab_count:WING"}})
+    install("lab-count", {"lab_count": EXPORTS.replace("{rows}", rows)}, {"trisect.wings": {"count": "lab_count:WING"}})
 
 
 @pytest.mark.parametrize(
@@ -179,15 +180,16 @@ def test_an_export_of_a_wing_is_written_and_one_that_fails_costs_no_other(instal
     assert (tmp_path / "count.txt").read_text() == f"{points} points" and (tmp_path / "cloud.ply").exists()
 
 
-def test_facts_of_a_wing_stand_below_the_results_and_in_the_tables(install, measured, tmp_path):
+def test_facts_of_a_wing_stand_below_the_results_and_in_the_workbook(install, measured, tmp_path):
     counting(install)
     content = results_content(measured)
     points = len(content.cloud)
     assert [fact.value for fact in content.facts["count"]] == [points]
     page = PdfReader(io.BytesIO(draw_report(content))).pages[0].extract_text().replace("\N{NO-BREAK SPACE}", " ")
     assert "Counted" in page and "From the package lab-count 1.2, which is no part of Trisect." in page
-    trisect("export", measured, "--format", "table", "--to", tmp_path)
-    assert f"count,points counted,{points}" in (tmp_path / "result.csv").read_text()
+    trisect("export", measured, "--format", "xlsx", "--to", tmp_path)
+    rows = [[cell.value for cell in row] for row in load_workbook(tmp_path / "result.xlsx")["facts"].iter_rows()]
+    assert any({"count", "points counted", points} <= {*row} for row in rows)
 
 
 def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
@@ -197,7 +199,9 @@ def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
     said, what = trisect("greet"), 'the command "greet" is of the wing greeting, which is not there'
     assert said.code == 2 and f"{what}; take it out of TRISECT_WITHOUT_WINGS." in said.err
     assert "cannot be used" not in said.err
-    assert "TRISECT_WITHOUT_WINGS names plan, but the wings are greeting, rig_planning and studies." in said.err
+    assert (
+        "TRISECT_WITHOUT_WINGS names plan, but the wings are geometry, greeting, rig_planning and studies." in said.err
+    )
 
 
 def test_wings_of_the_window_alone_and_broken_ones_are_among_the_names_that_are_listed(install, monkeypatch):

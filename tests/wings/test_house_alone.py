@@ -8,9 +8,10 @@ from typer.main import get_command
 
 from core.cli.app import app, whole_command
 from core.door import WITHOUT
+from core.pipeline.steps.report_step import results_content
 from core.wing import wings
 from tests.code import ROOT, modules, nodes
-from tests.simulated import CUT, trisect
+from tests.simulated import CUT, copy_of, trisect
 from tests.wings.strangers import look_again
 
 OURS = tuple(sorted(path.parent.name for path in ROOT.glob("core/wings/*/wing.py")))
@@ -58,6 +59,20 @@ def test_no_test_of_the_house_needs_a_wing():
         if isinstance(node, ast.Import | ast.ImportFrom) and NEEDS_A_WING.search(ast.unparse(node))
     }
     assert found == TABLES
+
+
+def test_a_comparison_stays_and_the_report_tells_that_it_is_not_printed(without, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    for name in ("comparison.json", "comparison.ply"):
+        (out / name).write_bytes(b"kept")
+    without("geometry")
+    content = results_content(out)
+    note = "The comparison with another surface is not printed, as the wing geometry is not there."
+    assert [str(one) for one in content.notes if one.code == "plugin.comparison_not_printed"] == [note]
+    assert "comparison" not in content.facts and (out / "comparison.json").read_bytes() == b"kept"
+    said = trisect("export", out, "--format", "compared", "--to", tmp_path / "to")
+    what = 'the format "compared" is of the wing geometry, which is not there; take it out of TRISECT_WITHOUT_WINGS.'
+    assert said.code == 2 and what in said.err
 
 
 def test_without_any_wing_a_set_is_measured_to_the_same_bytes(without, simulated, measured, tmp_path):

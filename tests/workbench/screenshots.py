@@ -245,14 +245,15 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     inspect.cut.turn_to(25.0, 0.0)
     yield "cut"
     inspect.cut.show(False)
-    page.comparison_fold.expand(animate=False)
-    inspect.comparison.set_value("align", "best fit")
-    inspect.comparison.compare(inspect.model.folder / NOMINAL)
-    _wait(app, lambda: inspect.comparison.shown is not None, PATIENCE_S)
+    page.layer_folds["comparison"].expand(animate=False)
+    comparison = inspect.layers["layer comparison"].layer
+    comparison.set_value("align", "best fit")
+    comparison.compare(inspect.model.folder / NOMINAL)
+    _wait(app, lambda: comparison.shown is not None, PATIENCE_S)
     _settle(app, bench, 0.5)
-    _side_to(page, page.comparison_fold)
+    _side_to(page, page.layer_folds["comparison"])
     yield "comparison"
-    page.comparison_fold.collapse(animate=False)
+    page.layer_folds["comparison"].collapse(animate=False)
 
 
 def _side_to(page: Any, widget: QWidget) -> None:

@@ -92,8 +92,6 @@ INSPECTION_VIEW = Job("core.pipeline.project.inspect_view:inspection_view")
 OUTLINE_SELECTED = Job("core.pipeline.project.inspect_view:outline_selected")
 CLICKED_FACES = Job("core.pipeline.project.clicked_faces:clicked_faces")
 LISTED_RESULTS = Job("core.pipeline.project.verdict:listed_results")
-SHOW_COMPARISON = Job("core.pipeline.project.comparison:show_comparison")
-FORGET_COMPARISON = Job("core.pipeline.project.comparison:forget_comparison")
 COMPILE_AHEAD = Job("core.pipeline.live.warm_up:ahead")
 
 REFUSE = Job("core.errors:refuse")

@@ -88,8 +88,6 @@ _ALL = (
     ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "gauge", label("results")),
     ExportKind("dcc", label("Digital calibration certificate (DCC 3.3)"), "result.xml", "gauge", label("certificate")),
     ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "gauge", label("geometry")),
-    ExportKind("compared", label("Comparison, point by point (PLY)"), "comparison.ply", "scan", label("comparison")),
-    ExportKind("compared-csv", label("Comparison as a table (CSV)"), "comparison.csv", "scan", label("comparison")),
     ExportKind("json", label("Thickness (JSON)"), "gauge.json", "gauge", label("thickness")),
     ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),
     ExportKind("opencv-json", label("Camera (OpenCV JSON)"), "camera_opencv.json", "camera", label("camera")),

@@ -9,38 +9,40 @@ from pathlib import Path
 from core.door import found_at
 from core.errors import InputError
 from core.files.project.folder import STUDY
+from core.files.step_graph import FILES
 from core.findings.brought import OURS, failure
+from core.findings.table import note_of
 from core.messages import Message
 from core.report.content import BroughtSection, ReportContent, ReportedStudy
 from core.report.facts.fact import Fact
 from core.report.wording import Words
-from core.wing import NO_READER_OF_STUDIES, STUDIES, how_to_get, wings
+from core.wing import GEOMETRY, NO_READER_OF_STUDIES, STUDIES, how_to_get, wings
 
 
 def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
     """Add to a report's content the sections that plug-ins (wings) make of the results in `out`.
 
-    A note tells of a section that fails.
+    A note tells of a section that fails, and of a comparison for which no wing is there.
     """
-    sections, failed = list[BroughtSection](), list[Message]()
-    below = dict(content.below_results)
+    sections, below, notes = list[BroughtSection](), dict[str, BroughtSection](), list[Message]()
     for wing, origin in wings().wings:
         for one in wing.sections:
             try:
                 facts = tuple(found_at(one.facts)(out, content))
                 _try(one.title, facts)
             except Exception as error:  # noqa: BLE001  (whatever a stranger's wing raises: the report is made)
-                failed.append(failure(origin or OURS, one.title, error))
+                notes.append(failure(origin or OURS, one.title, error))
                 continue
             section = BroughtSection(one.title, facts, origin)
             if facts and one.below_results:
                 below.setdefault(one.below_results, section)
             elif facts:
                 sections.append(section)
-    if not (sections or below or failed):
+    if (out / FILES["comparison"]).exists() and all(wing.name != GEOMETRY for wing in wings()):
+        notes.append(note_of("plugin.comparison_not_printed", name=GEOMETRY))
+    if not (sections or below or notes):
         return content
-    notes = (*content.notes, *failed)
-    return replace(content, brought=tuple(sections), below_results=below, notes=notes)
+    return replace(content, brought=tuple(sections), below_results=below, notes=(*content.notes, *notes))
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:

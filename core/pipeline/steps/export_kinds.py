@@ -23,7 +23,6 @@ from core.files.exchange.xlsx import write_xlsx
 from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
-from core.files.results.comparison_file import write_comparison_csv_in, write_comparison_ply_in
 from core.files.results.export_list import ExportKind, brought_exports, exports
 from core.files.results.gauge_file import read_lower_face
 from core.files.results.geometry_file import read_geometry, read_part_frame
@@ -36,6 +35,7 @@ from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, pa
 from core.messages import Message
 from core.progress import Progress, silent
 from core.report.content import ReportContent
+from core.wing import OUR_EXPORTS, how_to_get
 
 
 def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
@@ -114,8 +114,16 @@ def _there(source: Path) -> Path:
     return source
 
 
-def _in_frame(name: str, write: Callable[[Path, Path, ViewFrame], None]) -> Write:
-    """Writes a result that is kept in the camera frame in that of the export: write(path, source, frame)."""
+def in_frame(name: str, write: Callable[[Path, Path, ViewFrame], None]) -> Write:
+    """Make what writes a result that is kept in the camera frame in that of the export.
+
+    Parameters
+    ----------
+    name
+        Of the result, a key of FILES.
+    write
+        Writes it in another frame, given the path, the result's own and the frame.
+    """
 
     def written(results: Results, path: Path, progress: Progress = silent) -> None:
         if results.frame.kind is FrameKind.CAMERA:
@@ -202,10 +210,10 @@ def _ros(results: Results, path: Path, _: Progress) -> None:
 
 WRITERS: Mapping[str, Write] = {
     "pdf": _copy("report"),
-    "cloud": _in_frame("cloud", _write_cloud),
+    "cloud": in_frame("cloud", _write_cloud),
     "e57": _e57,
     "csv": _points,
-    "mesh": _in_frame("mesh", _write_mesh),
+    "mesh": in_frame("mesh", _write_mesh),
     "stl": _stl,
     "obj": _obj,
     "3mf": _3mf,
@@ -216,8 +224,6 @@ WRITERS: Mapping[str, Write] = {
     "qif": _of_content(write_qif),
     "dcc": _of_content(write_dcc),
     "dxf": _dxf,
-    "compared": _in_frame("compared", write_comparison_ply_in),
-    "compared-csv": _in_frame("comparison_table", write_comparison_csv_in),
     "json": _copy("gauge"),
     "opencv": _opencv,
     "opencv-json": _opencv,
@@ -228,6 +234,15 @@ WRITERS: Mapping[str, Write] = {
 
 def export_kind(name: str) -> ExportKind:
     """Find the kind of export that is called `name`; InputError that names all kinds if there is none."""
+    if name not in exports() and name in OUR_EXPORTS:
+        wing = OUR_EXPORTS[name]
+        what = Message(
+            "export.format_of_missing_wing",
+            'the format "{name}" is of the wing {wing}, which is not there',
+            name=name,
+            wing=wing,
+        )
+        raise InputError(what, where="--format", todo=how_to_get(wing))
     if name not in exports():
         raise InputError(
             Message("export.no_such_format", 'there is no format "{name}"', name=name),

@@ -26,7 +26,6 @@ from core.files.recording.rig import Rig, rig_to_toml
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import camera_id
 from core.files.results.check_file import InterimCheck, read_check
-from core.files.results.comparison_file import read_comparison
 from core.files.results.gauge_file import read_gauge
 from core.files.results.inspection_file import MEMBERS, InspectionFile, read_inspection
 from core.files.results.planes_file import planes_id
@@ -47,8 +46,7 @@ from core.pipeline.steps.brought_sections import with_brought_sections
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
-from core.report.content import BroughtSection, CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
-from core.report.facts.of_comparison import comparison_facts
+from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.wording import Words, target_in_words
 from core.scan.method import Method
 from core.scan.surface.cloud import FAN, Cloud
@@ -192,7 +190,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         simulated=record.simulated,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
-    content = replace(with_inspection(content, out), below_results=_compared(out), check=_check(out, calibration))
+    content = replace(with_inspection(content, out), check=_check(out, calibration))
     return with_brought_sections(content, out)
 
 
@@ -201,14 +199,6 @@ def _check(out: Path, calibration: Calibration) -> InterimCheck | None:
     path = out / FILES["check"]
     check = read_check(path) if path.exists() else None
     return check if check is not None and check.calibration_id == calibration.id else None
-
-
-def _compared(out: Path) -> Mapping[str, BroughtSection]:
-    """What the comparison among the results came to; nothing where there is none."""
-    path = out / FILES["comparison"]
-    if not path.exists():
-        return {}
-    return {"comparison": BroughtSection("Comparison", comparison_facts(read_comparison(path)))}
 
 
 def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:

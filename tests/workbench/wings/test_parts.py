@@ -28,6 +28,36 @@ def part(presenter):
 
 WINDOW_WING = WindowWing("torn", tabs={tabs}, below_repeats="lab_torn_window:part")
 """
+LAYER = """
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QLabel
+from workbench.wing import Coloured, InspectLayer, WindowWing
+
+class Layer(QObject):
+    changed, made = Signal(), Signal()
+    why_not = ""
+    def __init__(self, count):
+        super().__init__()
+        self.coloured = Coloured("worth", 2.0, np.arange(count, dtype=np.float32), np.zeros(4, np.float32), "no worth")
+        self.beside = None
+    def forget(self):
+        {forget}
+
+class Panel(QLabel):
+    def __init__(self, presenter, layer):
+        super().__init__()
+        self.layer = layer
+    def refresh(self):
+        self.setText(self.layer.coloured.title)
+
+def layer(presenter):
+    return {layer}
+
+WINDOW_WING = WindowWing(
+    "torn", layers=(InspectLayer("worth", "Worth", "Worth of it", "lab_torn_window:layer", "lab_torn_window:{panel}"),)
+)
+"""
 FAILED = "torn of the package lab-torn 1.2 failed: "
 
 
@@ -91,3 +121,59 @@ def test_what_is_no_widget_is_told_and_the_page_opens(page):
     assert not shown.series.parts and shown.tabs.tabText(shown.tabs.count() - 1) == "Plot"
     why = "of the package lab-torn 1.2 cannot be used: what it makes is no widget."
     assert sorted(told(shown)) == [f"Torn {why}", f"torn {why}"]
+
+
+@pytest.fixture
+def layered(install, monkeypatch, hand_bench, quick, show_page, tmp_path, qtbot):
+    """Shows the page Inspect of a project with the layer of a stranger's wing."""
+
+    def shown(layer=f"Layer({cases.POINTS})", forget="pass", panel="Panel"):
+        monkeypatch.setenv(WITHOUT, "studies, geometry")
+        monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
+        source = LAYER.format(layer=layer, forget=forget, panel=panel)
+        points = {"trisect.window_wings": {"torn": "lab_torn_window:WINDOW_WING"}}
+        install("lab-torn", {"lab_torn_window": source}, points)
+        made = show_page(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
+        made.refreshing.at_once()
+        return made
+
+    return shown
+
+
+def coloured_by(page, name):
+    page.surface.choices.choose_colour(name)
+    page.refreshing.at_once()
+    page.surface._draw()
+    return page.surface.scene._scene.cloud._values
+
+
+def test_a_layer_colours_the_surface_and_has_a_panel_of_its_own(layered):
+    page = layered()
+    assert page.layers["worth"].widget.text() == "worth" and told(page) == []
+    values = coloured_by(page, "layer worth")
+    assert list(values) == list(page.presenter.scan.view.number)
+    assert "no worth" in page.surface.line.text()
+
+
+@pytest.mark.parametrize(
+    ("made", "why"),
+    [
+        ({"layer": "3"}, "Worth of the package lab-torn 1.2 cannot be used: what it makes is no layer of the surface."),
+        ({"layer": "Layer(3).made"}, "what it makes is no layer of the surface."),
+        ({"layer": "Layer(3, 4)"}, "cannot be used: TypeError: "),
+        ({"layer": "Layer(3)"}, "Worth of the package lab-torn 1.2 failed: IndexError: "),
+        ({"layer": "QObject()"}, "Worth of the package lab-torn 1.2 failed: AttributeError: "),
+        ({"forget": "raise OSError('torn')"}, "Worth of the package lab-torn 1.2 failed: OSError: torn"),
+        ({"panel": "None"}, "Worth of it of the package lab-torn 1.2 cannot be used: AttributeError: "),
+        ({"panel": "layer"}, "Worth of it of the package lab-torn 1.2 cannot be used: TypeError: "),
+    ],
+)
+def test_a_layer_that_fails_is_told_and_the_page_goes_on(layered, made, why):
+    page = layered(**made)
+    if page.surface.choices.colours.findData("layer worth") >= 0:
+        coloured_by(page, "layer worth")
+    page.presenter.scan.forget()
+    page.refreshing.at_once()
+    assert any(why in text for text in told(page)), told(page)
+    assert len(told(page)) == len(set(told(page)))
+    assert page.features.isVisibleTo(page)

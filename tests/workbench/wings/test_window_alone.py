@@ -43,10 +43,16 @@ def test_every_folder_of_a_wing_is_found() -> None:
 def test_the_window_opens_without_it(taken_away: WindowWing, window: MainWindow) -> None:
     page: Any = window.pages["inspect"]
     entries = {one.name for one in taken_away.entries}
-    assert entries or taken_away.tabs or taken_away.below_repeats
+    assert entries or taken_away.tabs or taken_away.layers or taken_away.below_repeats
     assert not entries & window.menus.actions.keys()
     assert page.tabs.count() == 4 + sum(len(wing.tabs) for wing in window_wings())
     assert not {one.title for one in taken_away.tabs} & {*tab_titles(page.tabs)}
+    layers = [one.name for wing in window_wings() for one in wing.layers]
+    colours = page.surface.choices.colours
+    assert list(page.layers) == list(page.layer_folds) == layers
+    assert [f"layer {name}" for name in layers] == [
+        name for n in range(colours.count()) if (name := colours.itemData(n)).startswith("layer ")
+    ]
     assert len(page.series.parts) == sum(bool(wing.below_repeats) for wing in window_wings())
     assert "many sets" in window.menus.actions and window.bench.notices.all == []
 
@@ -80,4 +86,6 @@ def test_a_name_of_no_wing_is_told_in_the_window(
     qtbot.addWidget(window)
     opened_by_entries(hand_bench, window)
     (notice,) = hand_bench.notices.all
-    assert notice.text == "TRISECT_WITHOUT_WINGS names rig_planing, but the wings are rig_planning and studies."
+    assert (
+        notice.text == "TRISECT_WITHOUT_WINGS names rig_planing, but the wings are geometry, rig_planning and studies."
+    )

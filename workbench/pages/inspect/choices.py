@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -36,7 +37,7 @@ Shape = Literal["points", "mesh", "both"]
 
 
 class SurfaceChoices(QWidget):
-    """Bar over the 3D view."""
+    """Bar over the 3D view. `layers` are colours that wings bring, by name, each with its title."""
 
     changed = Signal()
     """The shape or the colour is another one."""
@@ -44,8 +45,9 @@ class SurfaceChoices(QWidget):
     limited = Signal(object)
     """Points up to this σ in mm are to be shown; None: all."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, layers: Mapping[str, str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._layers = layers
         self.shapes: dict[Shape, QPushButton] = {}
         self._tips: dict[Shape, str] = {}
         self._nominal = False
@@ -67,16 +69,16 @@ class SurfaceChoices(QWidget):
 
     @property
     def colour(self) -> str:
-        """What the surface is coloured by: "faces", "sigma", "height", "deviation", "nominal", "compared", …."""
+        """What the surface is coloured by: "faces", "sigma", "height", "deviation", "nominal", …."""
         return str(self.colours.currentData())
 
     def choose_colour(self, name: str) -> None:
         """Choose what the surface is coloured by."""
         self.colours.setCurrentIndex(self.colours.findData(name))
 
-    def show_compared(self, why_not: str) -> None:
-        """Enable colouring by the deviation from another surface, or, with a reason `why_not`, disable it."""
-        self._offer("compared", why_not)
+    def show_layer(self, name: str, why_not: str) -> None:
+        """Enable colouring by the layer called `name`, or, with a reason `why_not`, disable it."""
+        self._offer(name, why_not)
 
     def show_nominal(self, there: bool) -> None:
         """Colour by deviations from the nominal surface if they are `there`; else by what was chosen before."""
@@ -131,7 +133,7 @@ class SurfaceChoices(QWidget):
             ("sigma", tr("σ of the points")),
             ("deviation", tr("deviation from face")),
             ("nominal", tr("deviation from nominal")),
-            ("compared", tr("deviation from other surface")),
+            *self._layers.items(),
             ("frame", tr("frame")),
             ("plain", tr("nothing (plain)")),
         ):

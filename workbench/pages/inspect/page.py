@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QWidget
 from core.states import DECISIONS
 from workbench.language import sentence, sentences, tr
 from workbench.pages.inspect import words
-from workbench.pages.inspect.comparison_panel import ComparisonPanel
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
 from workbench.pages.inspect.features.form import CLICK
 from workbench.pages.inspect.features.panel import FeaturesPanel
@@ -25,7 +24,7 @@ from workbench.pages.inspect.surface import SurfaceTab
 from workbench.pages.step_page import StepPage
 from workbench.views.layouts import Tabs
 from workbench.views.stage_card import CardButton, StageCard
-from workbench.wing import inspect_tabs, repeats_parts
+from workbench.wing import PartOfWing, inspect_tabs, repeats_parts
 
 REPEATS, PLOT = 2, 3
 """Places of these tabs."""
@@ -79,10 +78,13 @@ class InspectPage(StepPage):
         self.conditions_fold = self.add_panel(
             tr("Conditions and frame"), self.conditions, collapsed=True, kept="conditions"
         )
-        self.comparison = ComparisonPanel(presenter)
-        self.comparison_fold = self.add_panel(
-            tr("Comparison with another surface"), self.comparison, collapsed=True, kept="comparison"
-        )
+        self.layers: dict[str, PartOfWing] = {}
+        self.layer_folds: dict[str, Any] = {}
+        for layer in presenter.layers.values():
+            if (panel := layer.panel(presenter.bench, presenter)) is not None:
+                name, title = layer.one.name, tr(layer.one.panel_title)
+                self.layers[name] = panel
+                self.layer_folds[name] = self.add_panel(title, panel.widget, collapsed=True, kept=name)
         self.picks = PicksPanel(presenter)
         self.add_panel(tr("Points and distances"), self.picks, kept="points")
         self.add_to_side(self.features.notes)  # what results say is last: there it pushes nothing as it comes
@@ -119,7 +121,8 @@ class InspectPage(StepPage):
         self.conditions_fold.setText(
             tr("Conditions and frame ({said})", said=said) if said else tr("Conditions and frame")
         )
-        for panel in (self.result, self.faces, self.features, self.part, self.conditions, self.comparison, self.picks):
+        before: tuple[Any, ...] = (self.result, self.faces, self.features, self.part, self.conditions)
+        for panel in (*before, *self.layers.values(), self.picks):
             panel.refresh()
         count = len(p.repeats.all)
         self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else tr("Repeats"))

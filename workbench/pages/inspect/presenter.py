@@ -22,7 +22,6 @@ from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.clicked import InspectClicked, Target
 from workbench.pages.inspect.clicked import Mode as ClickMode
-from workbench.pages.inspect.comparison import InspectComparison
 from workbench.pages.inspect.cut import InspectCut
 from workbench.pages.inspect.drawn import InspectDrawn
 from workbench.pages.inspect.faces import FACES, InspectFaces
@@ -37,6 +36,7 @@ from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.inspect.stage import Facts, Stage, WhyNot, stage_of, why_not_measure
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import State
+from workbench.wing import inspect_layers
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -78,7 +78,6 @@ class InspectPresenter(StepPresenter):
         self.feature = InspectFeatureEdit(self.features, self.scan)
         self.clicked = InspectClicked(self.features, self.scan)
         self.cut = InspectCut(self.features, self.scan, lambda: self.frame)
-        self.comparison = InspectComparison(bench, self.scan)
         self.drawn = InspectDrawn(
             self.faces,
             self.features,
@@ -86,8 +85,11 @@ class InspectPresenter(StepPresenter):
             lambda: self.scan.gauge is not None and not self.scan.is_thickness_old,
         )
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
-        for part in (self.faces, self.picks, self.repeats, self.features, self.clicked, self.comparison):
+        for part in (self.faces, self.picks, self.repeats, self.features, self.clicked):
             part.changed.connect(self.changed)
+        self.layers = inspect_layers(bench, self)
+        for layer in self.layers.values():
+            layer.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(self._look_at_scan)
         bench.settings.part_frame_changed.connect(self.changed)
@@ -373,7 +375,8 @@ class InspectPresenter(StepPresenter):
             self.picks.clear()
             self.clicked.stop()
             self.cut.show(False)
-            self.comparison.forget()
+            for layer in self.layers.values():
+                layer.forget()
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
             self.drawn.forget()

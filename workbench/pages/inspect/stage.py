@@ -184,34 +184,3 @@ def picks_buttons(facts: PicksFacts) -> PicksButtons:
     none = "" if facts.some else tr("Nothing is picked yet.")
     choose = "" if facts.chosen else tr("Choose a point or a distance in the list first.")
     return PicksButtons(facts.no_surface, none or choose, none)
-
-
-@dataclass(frozen=True, slots=True)
-class ComparisonFacts:
-    """Facts from which the buttons of the comparison follow."""
-
-    no_surface: str
-    """Why there is no scan to compare."""
-    cannot_write: str
-    """Why nothing can be kept among the results."""
-    running: bool
-    shown: bool
-    """One is shown."""
-
-
-class ComparisonButtons(NamedTuple):
-    """Reason for each disabled button, or ""."""
-
-    compare: str
-    take_away: str
-    look: str
-    """Choose what is seen of it."""
-
-
-def comparison_buttons(facts: ComparisonFacts) -> ComparisonButtons:
-    """Derive why each button of the comparison is disabled; "" for each that is enabled."""
-    busy = tr("The surfaces are being compared.") if facts.running else ""
-    none = "" if facts.shown else tr("Compare with another surface first.")
-    return ComparisonButtons(
-        facts.no_surface or facts.cannot_write or busy, busy or none or facts.cannot_write, busy or none
-    )

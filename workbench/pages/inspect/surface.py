@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -44,10 +45,10 @@ from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import enable, in_column
 from workbench.views.scene.colours import UNKNOWN
 from workbench.views.scene.view import Colouring, SceneView
+from workbench.wing import LayerOfWing
 
 if TYPE_CHECKING:
     from core.inspect.shown.clicked_faces import ClickedFaces
-    from core.inspect.shown.shown_comparison import ShownComparison
     from core.inspect.shown.shown_features import ShownFeature
     from core.inspect.shown.shown_scan import InspectionView, NextPair, ShownMesh
 
@@ -65,9 +66,6 @@ CUT = "cut"
 
 DATUMS = "datums"
 """Name of the letters that are written at them."""
-
-OTHER = "other surface"
-"""Name of its points."""
 
 NOMINAL = "nominal surface"
 """Name of its triangles."""
@@ -112,7 +110,7 @@ class SurfaceTab(QWidget):
         self._mesh: tuple[object, ...] = ()
         self._cut: tuple[object, ...] = ()
         self._proposal: ClickedFaces | None = None
-        self._other: ShownComparison | None = None
+        self._beside: dict[str, NDArray[np.float32] | None] = {}
         self._nominal: ShownFeature | None = None
         self._next: NextPair | None = None
         self._region: tuple[Array, ...] = ()
@@ -121,7 +119,8 @@ class SurfaceTab(QWidget):
         self._later.setSingleShot(True)
         self._later.setInterval(DRAW_WITHIN_MS)
         self._later.timeout.connect(self._draw)
-        self.choices, self.scene, self.line, self.hint = SurfaceChoices(), SceneView(), QLabel(), QLabel()
+        titles = {name: tr(layer.one.title) for name, layer in presenter.layers.items()}
+        self.choices, self.scene, self.line, self.hint = SurfaceChoices(titles), SceneView(), QLabel(), QLabel()
         self.empty = EmptyState()
         """Stands in place of the view where there is no scan."""
         self.empty.hide()
@@ -167,7 +166,8 @@ class SurfaceTab(QWidget):
         self.nominal.triggered.connect(self._choose_nominal)
         presenter.seen_from, presenter.is_put_back = self.scene.seen_from, self.scene.is_put_back
         presenter.measured.connect(self._show_faces)
-        presenter.comparison.made.connect(self._show_compared)
+        for name, layer in presenter.layers.items():
+            layer.connect_made(partial(self._show_layer, name))
 
     def show_place(self, name: str) -> None:
         """Move the points of the feature called `name`, or of the thickness, to the middle of the view."""
@@ -175,9 +175,9 @@ class SurfaceTab(QWidget):
         if place is not None:
             self.scene.look_at(place)
 
-    def _show_compared(self) -> None:
-        self.choices.show_compared("")
-        self.choices.choose_colour("compared")
+    def _show_layer(self, name: str) -> None:
+        self.choices.show_layer(name, "")
+        self.choices.choose_colour(name)
 
     def _show_faces(self) -> None:
         self.choices.choose_colour("faces")
@@ -186,7 +186,8 @@ class SurfaceTab(QWidget):
         """Show the scan in 3D with its colours, marks and choices, or a sentence if there is none."""
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
-        self.choices.show_compared("" if p.comparison.shown is not None else p.comparison.buttons.look)
+        for name, layer in p.layers.items():
+            self.choices.show_layer(name, layer.why_not)
         self.choices.show_nominal(self._deviating() is not None)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
@@ -204,7 +205,7 @@ class SurfaceTab(QWidget):
         self._show_feature()
         self.callouts.refresh()
         self._show_next_pair()
-        self._show_other()
+        self._show_beside()
         self._show_nominal()
         self._show_proposal()
         self._show_drawn()
@@ -259,7 +260,8 @@ class SurfaceTab(QWidget):
         self.scene.set_handle(None)
         self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], [], []
-        self._proposal = self._other = self._nominal = self._next = None
+        self._proposal = self._nominal = self._next = None
+        self._beside = {}
         self._region = ()
         self.frame.show(None)
         self.scene.clear(p.scan.problem or tr("Reading the scan …"))
@@ -305,7 +307,8 @@ class SurfaceTab(QWidget):
         """What the colours hang on where they are not of the scan alone."""
         if colour == "nominal":
             return (self._deviating(),)
-        return self._presenter.comparison.look if colour == "compared" else ()
+        layer = self._presenter.layers.get(colour)
+        return () if layer is None else (layer.coloured,)
 
     def _deviating(self) -> ShownFeature | None:
         """What of the chosen feature was compared with a nominal surface; None if nothing was."""
@@ -314,12 +317,10 @@ class SurfaceTab(QWidget):
         return next((one for one in own if one.deviations is not None), None)
 
     def _draw_mesh(self, view: InspectionView, mesh: ShownMesh) -> None:
-        name, comparison = self.colour, self._presenter.comparison
+        name, layer = self.colour, self._presenter.layers.get(self.colour)
         look: dict[str, Any] = {"colour": PLAIN}
-        if name == "compared" and comparison.shown is not None:
-            values = comparison.shown.coloured_mesh(significant_only=comparison.significant_only)
-            if len(values) == len(mesh.vertices):
-                look = {"values": values, "colouring": self._compared_colouring(comparison.shown)}
+        if layer is not None:
+            look = _coloured(layer, layer.at_vertices(len(mesh.vertices))) or look
         if name == "nominal":
             look = {"values": np.full(len(mesh.vertices), np.nan, np.float32), "colouring": self._nominal_colouring()}
         if name in ("sigma", "height", "deviation"):
@@ -327,23 +328,17 @@ class SurfaceTab(QWidget):
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
 
     def _look(self, view: InspectionView, count: int, name: str) -> dict[str, Any]:
-        comparison = self._presenter.comparison
-        if name == "plain" or (name == "compared" and comparison.shown is None):  # it has just been taken away
+        layer = self._presenter.layers.get(name)
+        if layer is not None:  # where it is there no more it has just been taken away
+            return _coloured(layer, layer.at_points(view.number[:count])) or {"colours": PLAIN}
+        if name == "plain":
             return {"colours": PLAIN}
-        if name == "compared" and comparison.shown is not None:
-            only, number = comparison.significant_only, view.number[:count]
-            values = comparison.shown.coloured(number, significant_only=only)
-            return {"values": values, "colouring": self._compared_colouring(comparison.shown)}
         if name == "nominal":  # what was compared is marked over it, the rest is grey
             return {"values": np.full(count, np.nan, np.float32), "colouring": self._nominal_colouring()}
         if name == "faces":
             table = np.array([to_rgba(colour)[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8)
             return {"colours": table[view.face[:count]]}
         return {"values": getattr(view, name)[:count], "colouring": self._colouring(view, name)}
-
-    def _compared_colouring(self, shown: ShownComparison) -> Colouring:
-        ends = -shown.range_mm, shown.range_mm
-        return Colouring(tr("deviation from {other}", other=shown.other), "mm", ends, "deviation")
 
     def _nominal_colouring(self) -> Colouring:
         """Classes are quarters of the tolerance, those at the ends are of all beyond it."""
@@ -419,17 +414,17 @@ class SurfaceTab(QWidget):
             lines = [outline[[*range(len(outline)), 0]] for outline in pair.outlines]
             self.scene.set_polylines(NEXT_FACES, lines, NEXT_PAIR)
 
-    def _show_other(self) -> None:
-        """The surface the scan is compared with, beside it."""
-        comparison = self._presenter.comparison
-        shown = comparison.shown if comparison.beside else None
-        if shown is self._other:
-            return
-        self._other = shown
-        if shown is None:
-            self.scene.remove_highlight(OTHER)
-        else:
-            self.scene.set_highlight(OTHER, shown.other_points, OTHER_SURFACE)
+    def _show_beside(self) -> None:
+        """Points that layers show beside the surface."""
+        for name, layer in self._presenter.layers.items():
+            points = layer.beside
+            if points is self._beside.get(name):
+                continue
+            self._beside[name] = points
+            if points is None:
+                self.scene.remove_highlight(name)
+            else:
+                self.scene.set_highlight(name, points, OTHER_SURFACE)
 
     def _choose_nominal(self, wanted: bool) -> None:
         self._presenter.bench.settings.nominal_shown = wanted
@@ -475,9 +470,9 @@ class SurfaceTab(QWidget):
         """What is grey beside the colours of the bar."""
         if self.colour == "nominal":
             return [_dot(GREY, tr("not compared"))]
-        if self.colour == "compared" and self._presenter.comparison.significant_only:
-            return [_dot(GREY, tr("not significant"))]
-        return []
+        layer = self._presenter.layers.get(self.colour)
+        coloured = None if layer is None else layer.coloured
+        return [] if coloured is None or not coloured.grey else [_dot(GREY, escape(coloured.grey))]
 
     def _legend(self) -> list[str]:
         """What the colours of the chosen feature mean, each with its sign; nothing where none is to be seen."""
@@ -595,6 +590,15 @@ class SurfaceTab(QWidget):
 def _places(features: Iterable[ShownFeature]) -> NDArray[np.float32]:
     """Points (N, 3) in mm of all of them."""
     return np.concatenate([np.zeros((0, 3), np.float32), *(one.places for one in features)])
+
+
+def _coloured(layer: LayerOfWing, values: NDArray[np.float32] | None) -> dict[str, Any]:
+    """How a layer's values are drawn; nothing where there are none."""
+    coloured = layer.coloured
+    if coloured is None or values is None:
+        return {}
+    ends = -coloured.end_mm, coloured.end_mm
+    return {"values": values, "colouring": Colouring(coloured.title, "mm", ends, "deviation")}
 
 
 def _dot(colour: str, text: str) -> str:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QCheckBox, QPushButton, QWidget
 
-from core.inspect.shown.shown_comparison import ALIGNED, AUTOMATIC
-from core.report.facts.of_comparison import comparison_facts
+from core.wings.geometry.comparison.facts import comparison_facts
+from core.wings.geometry.comparison.shown import ALIGNED, AUTOMATIC
 from workbench.language import text_of, tr
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.words import show_facts
@@ -17,14 +17,17 @@ from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import enable, in_column, in_row
 from workbench.views.lists.value_rows import ValueRows
+from workbench.wings.geometry.comparison import InspectComparison
 
 
 class ComparisonPanel(QWidget):
     """Panel of the comparison: wear, before and after, or the part and its nominal surface."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, presenter: InspectPresenter, comparison: InspectComparison, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self._presenter, self._comparison = presenter, presenter.comparison
+        self._presenter, self._comparison = presenter, comparison
         self.file = QPushButton(icon("mdi6.file-compare"), tr("With a file …"))
         self.project = QPushButton(icon("mdi6.folder-open-outline"), tr("With a project …"))
         self.form = SettingsForm()
@@ -73,7 +76,7 @@ class ComparisonPanel(QWidget):
         enable(self.away, can.take_away, tr("Show it no more, and take it out of the results and the report"))
         self.form.set_values({"align": comparison.align, "diameter_mm": comparison.diameter_mm})
         self.significant.setChecked(comparison.significant_only)
-        self.beside.setChecked(comparison.beside)
+        self.beside.setChecked(comparison.shows_other)
         for box in (self.significant, self.beside):
             enable(box, can.look, "")
         for widget in (self.rows, self.significant, self.beside, self.away):

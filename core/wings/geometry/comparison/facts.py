@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from core.inspect.shown.shown_comparison import ALIGNED, Alignment
 from core.messages import Message, label, plain
 from core.report.facts.fact import Fact, Reader
+from core.wings.geometry.comparison.shown import ALIGNED, Alignment
 
 NOWHERE = label("nowhere significant")
 
@@ -23,7 +23,7 @@ class ChangedPart(Protocol):
 
 
 class Compared(Protocol):
-    """Summary of a comparison, as `core.files.results.comparison_file.ComparisonFile`."""
+    """Summary of a comparison, as `core.wings.geometry.comparison.comparison_file.ComparisonFile`."""
 
     @property
     def other(self) -> str: ...

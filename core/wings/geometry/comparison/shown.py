@@ -73,12 +73,12 @@ class ShownComparison:
     range_mm: float
     other_points: NDArray[np.float32]
 
-    def coloured(self, order: NDArray[np.int32], *, significant_only: bool) -> Values:
-        """Select the deviations in mm of the points numbered `order`; with `significant_only`, NaN for the others."""
-        values = self.deviation[order]
-        return np.where(self.significant[order], values, np.float32(np.nan)) if significant_only else values
+    def of_points(self, *, significant_only: bool) -> Values:
+        """Select the deviations (N,) in mm of the points; with `significant_only`, NaN where they are not."""
+        values = self.deviation
+        return np.where(self.significant, values, np.float32(np.nan)) if significant_only else values
 
-    def coloured_mesh(self, *, significant_only: bool) -> Values:
-        """Select the deviations in mm of the mesh; with `significant_only`, NaN where they are not significant."""
+    def of_mesh(self, *, significant_only: bool) -> Values:
+        """Select the deviations (V,) in mm of the mesh; with `significant_only`, NaN where they are not."""
         values = self.mesh_deviation
         return np.where(self.mesh_significant, values, np.float32(np.nan)) if significant_only else values

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.inspect.comparison import ComparisonScales, SurfacePoints, compare, sampled_surface
 from core.model import Pose
 from core.scan.surface.triangles import Triangles
+from core.wings.geometry.comparison.compare import ComparisonScales, SurfacePoints, compare, sampled_surface
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
 from tests.inspect.shape_scan import PIN, PIN_AXIS, PIN_RADIUS, ShapeScan
 

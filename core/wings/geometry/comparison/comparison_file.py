@@ -21,11 +21,11 @@ from core.files.results.cloud_csv import PLACES
 from core.files.results.frame_text import frame_comments
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.tables import RESULT, Finite, OrNan, Probability
-from core.inspect.comparison import Comparison
-from core.inspect.shown.shown_comparison import Alignment, Changed
 from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Command, Message
 from core.model.arrays import Array
+from core.wings.geometry.comparison.compare import Comparison
+from core.wings.geometry.comparison.shown import Alignment, Changed
 
 NAME = "comparison.json"
 """Among the results of a scan."""

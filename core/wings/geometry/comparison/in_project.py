@@ -10,11 +10,11 @@ from core.files.atomic import remove
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.step_graph import FILES
-from core.inspect.comparison import ComparisonScales
-from core.inspect.shown.shown_comparison import ShownComparison
 from core.pipeline.project.verify import noting_results
-from core.pipeline.steps.compare_step import Compared, compare_step
 from core.progress import Progress, silent
+from core.wings.geometry.comparison.compare import ComparisonScales
+from core.wings.geometry.comparison.compare_step import Compared, compare_step
+from core.wings.geometry.comparison.shown import ShownComparison
 
 MOST_DRAWN = 200_000
 """So many points of the other surface are drawn."""
@@ -25,7 +25,7 @@ def compare_project(
 ) -> tuple[Compared, dict[str, Path]]:
     """Compare a project's scan with the surface in `other`, write the result, and note it in the audit trail.
 
-    As `core.pipeline.steps.compare_step.compare_step`.
+    As `core.wings.geometry.comparison.compare_step.compare_step`.
     """
     folder = folder if folder.is_dir() else folder.parent
     with noting_results(folder):

@@ -11,26 +11,26 @@ from scipy.spatial import cKDTree
 
 from core.errors import InputError
 from core.files.atomic import make_folder, remove
-from core.files.exchange.surface_file import OtherSurface, read_surface
 from core.files.project.folder import is_project, results_in
-from core.files.results.comparison_file import (
-    ComparisonFile,
-    write_comparison,
-    write_comparison_csv,
-    write_comparison_ply,
-)
 from core.files.results.geometry_file import read_part_frame
 from core.files.step_graph import FILES
-from core.inspect.comparison import Comparison, ComparisonScales, SurfacePoints, compare, sampled_surface
 from core.inspect.fit.plane_search import above_table, search_tolerance
 from core.inspect.plan.alignment import best_fit
-from core.inspect.shown.shown_comparison import ALIGNED, AUTOMATIC, Alignment
 from core.messages import Message
 from core.model import Pose
 from core.pipeline.steps.inspect_step import InspectedScan, open_scan
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangles import ProximityQuery, Triangles
+from core.wings.geometry.comparison.compare import Comparison, ComparisonScales, SurfacePoints, compare, sampled_surface
+from core.wings.geometry.comparison.comparison_file import (
+    ComparisonFile,
+    write_comparison,
+    write_comparison_csv,
+    write_comparison_ply,
+)
+from core.wings.geometry.comparison.shown import ALIGNED, AUTOMATIC, Alignment
+from core.wings.geometry.comparison.surface_file import OtherSurface, read_surface
 
 ALIGNMENTS = (AUTOMATIC, *ALIGNED)
 USUAL = ComparisonScales()

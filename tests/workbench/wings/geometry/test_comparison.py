@@ -8,18 +8,19 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox
 
-from core.inspect.shown.shown_comparison import Changed, ShownComparison
+from core.wings.geometry.comparison.shown import Changed, ShownComparison
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.page import InspectPage
-from workbench.pages.inspect.stage import ComparisonFacts, comparison_buttons
-from workbench.pages.inspect.surface import OTHER
 from workbench.views import ask
 from workbench.views.scene.contents import Marks
+from workbench.wings.geometry.buttons import ComparisonFacts, comparison_buttons
+from workbench.wings.geometry.jobs import FORGET_COMPARISON, SHOW_COMPARISON
 from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 OTHER_FILE = Path("/somewhere/before.ply")
+LAYER = "layer comparison"
 
 
 def compared() -> ShownComparison:
@@ -49,16 +50,16 @@ def page(hand_bench, tmp_path, qtbot, monkeypatch):
     monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: OTHER_FILE)
     measuring = cast(HandLane, hand_bench.measuring)
-    measuring.answers[jobs.SHOW_COMPARISON] = lambda *_: compared()
+    measuring.answers[SHOW_COMPARISON] = lambda *_: compared()
     cast(HandLane, hand_bench.quick).answers |= {
         jobs.INSPECTION_VIEW: lambda folder, project: cases.view(cases.gauge()),
-        jobs.FORGET_COMPARISON: lambda *_: None,
+        FORGET_COMPARISON: lambda *_: None,
     }
     made = InspectPage(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
     qtbot.addWidget(made)
     made.resize(1280, 800)
     made.show()
-    made.comparison_fold.expand(animate=False)
+    made.layer_folds["comparison"].expand(animate=False)
     made.refreshing.at_once()
     yield made
     made.close()
@@ -78,61 +79,65 @@ def settle(page, qtbot):
     page.refreshing.at_once()
 
 
+def panel(page):
+    return page.layers["comparison"].widget
+
+
 def values(page):
     return page.surface.scene._scene.cloud._values
 
 
 def test_a_file_that_is_chosen_colours_the_scan_by_its_deviation(page, qtbot):
-    press(page, qtbot, page.comparison.file)
-    assert page.surface.colour == "compared"
+    press(page, qtbot, panel(page).file)
+    assert page.surface.colour == LAYER
     order = page.presenter.scan.view.number
     shown = compared()
     expected = np.where(shown.significant, shown.deviation, np.nan)[order]
     assert np.array_equal(values(page), expected, equal_nan=True), "what may be chance is grey"
     assert "not significant" in page.surface.line.text()
-    assert page.comparison.rows.text_of("Compared with") == "before.ply"
-    assert "25.0 %" in page.comparison.rows.text_of("Less material")
-    assert page.comparison.rows.text_of("More material") == "nowhere significant"
+    assert panel(page).rows.text_of("Compared with") == "before.ply"
+    assert "25.0 %" in panel(page).rows.text_of("Less material")
+    assert panel(page).rows.text_of("More material") == "nowhere significant"
 
 
 def test_the_mask_can_be_taken_off(page, qtbot):
-    press(page, qtbot, page.comparison.file)
-    press(page, qtbot, page.comparison.significant)
+    press(page, qtbot, panel(page).file)
+    press(page, qtbot, panel(page).significant)
     assert "not significant" not in page.surface.line.text()
     assert np.array_equal(values(page), compared().deviation[page.presenter.scan.view.number], equal_nan=True)
 
 
 def test_the_other_surface_is_seen_beside_it_when_asked_for(page, qtbot):
-    press(page, qtbot, page.comparison.file)
-    assert (Marks, OTHER) not in page.surface.scene._scene.items
-    press(page, qtbot, page.comparison.beside)
-    assert len(page.surface.scene._scene.items[Marks, OTHER].points) == 5
-    press(page, qtbot, page.comparison.beside)
-    assert (Marks, OTHER) not in page.surface.scene._scene.items
+    press(page, qtbot, panel(page).file)
+    assert (Marks, LAYER) not in page.surface.scene._scene.items
+    press(page, qtbot, panel(page).beside)
+    assert len(page.surface.scene._scene.items[Marks, LAYER].points) == 5
+    press(page, qtbot, panel(page).beside)
+    assert (Marks, LAYER) not in page.surface.scene._scene.items
 
 
 def test_another_alignment_compares_anew(page, qtbot):
-    press(page, qtbot, page.comparison.file)
+    press(page, qtbot, panel(page).file)
     asked = []
-    page.presenter.bench.measuring.answers[jobs.SHOW_COMPARISON] = lambda *given: asked.append(given) or compared()
-    page.presenter.comparison.set_value("align", "best fit")
+    page.presenter.bench.measuring.answers[SHOW_COMPARISON] = lambda *given: asked.append(given) or compared()
+    page.presenter.layers[LAYER].layer.set_value("align", "best fit")
     settle(page, qtbot)
     assert [(other, align) for _, other, align, _ in asked] == [(OTHER_FILE, "best fit")]
 
 
 def test_taken_away_it_is_gone_from_view_and_results(page, qtbot):
-    press(page, qtbot, page.comparison.file)
-    press(page, qtbot, page.comparison.away)
+    press(page, qtbot, panel(page).file)
+    press(page, qtbot, panel(page).away)
     assert page.surface.colour == "height"
-    assert page.comparison.rows.isHidden()
-    assert jobs.FORGET_COMPARISON in page.presenter.bench.quick.ran
+    assert panel(page).rows.isHidden()
+    assert FORGET_COMPARISON in page.presenter.bench.quick.ran
 
 
 def test_another_scan_forgets_it(page, qtbot):
-    press(page, qtbot, page.comparison.file)
+    press(page, qtbot, panel(page).file)
     page.presenter.scan.forget()
     settle(page, qtbot)
-    assert page.presenter.comparison.shown is None
+    assert page.presenter.layers[LAYER].layer.shown is None
 
 
 @pytest.mark.parametrize("no_surface", ["", "Scan the part first."])

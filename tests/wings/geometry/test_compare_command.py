@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.results.comparison_file import read_comparison
 from core.files.results.mesh_export import write_stl
 from core.files.results.ply import read_cloud, write_cloud
 from core.files.results.ply_format import parse_ply
@@ -15,7 +14,10 @@ from core.messages import plain
 from core.pipeline.steps.report_step import results_content
 from core.scan.surface.fused_surface import Mesh
 from core.simulate.scene.objects import gauge_block
+from core.wings.geometry.comparison.comparison_file import read_comparison
 from tests.simulated import copy_of, trisect
+from tests.test_cli_talk import completed
+from tests.test_extras import extras_loaded_by
 
 WEAR_MM = 0.4
 """The small set is noisy."""
@@ -91,3 +93,20 @@ def test_what_cannot_be_asked_is_refused_in_one_sentence(results, arguments, sai
     refused = trisect("compare", results, results, *arguments)
     assert refused.code == 2
     assert said in refused.err
+
+
+def test_a_folder_that_is_not_there_is_refused_in_one_sentence(tmp_path):
+    said = trisect("compare", tmp_path / "wrong", tmp_path / "wrong")
+    assert (said.code, bool(said.sentence)) == (2, True)
+
+
+def test_a_damaged_comparison_costs_the_report_nothing_else(results):
+    (results / "comparison.json").write_text("{}")
+    content = results_content(results)
+    assert "comparison" not in content.facts
+    assert [note for note in content.notes if note.code == "plugin.failed"]
+
+
+def test_a_comparison_needs_no_extra_and_a_shell_completes_it_without_numba():
+    assert extras_loaded_by("core.wings.geometry.comparing") == []
+    assert "compare" in completed("trisect ")

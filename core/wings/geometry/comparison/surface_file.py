@@ -17,10 +17,10 @@ from core.files.limits import LARGEST, check_file
 from core.files.reading import MISSING, read_bytes
 from core.files.results.nominal_surface import read_nominal
 from core.files.results.ply_format import Ply, parse_ply
-from core.inspect.comparison import SurfacePoints
 from core.messages import Message
 from core.model.arrays import Array
 from core.scan.surface.triangles import Triangles
+from core.wings.geometry.comparison.compare import SurfacePoints
 
 MM_PER_METRE = 1e3
 """E57 states metres."""

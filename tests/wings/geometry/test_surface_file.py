@@ -8,9 +8,15 @@ import trimesh
 
 from core.errors import InputError
 from core.files.exchange.e57 import write_e57
-from core.files.exchange.surface_file import read_surface
 from core.files.results.ply import write_cloud, write_mesh
+from core.wings.geometry.comparison.surface_file import read_surface
 from tests.files.test_cad_part import PLATE
+from tests.report.report_samples import block_content
+
+
+@pytest.fixture(scope="module")
+def content():
+    return block_content()
 
 
 def test_a_cloud_keeps_points_normals_and_sigma(tmp_path, content):

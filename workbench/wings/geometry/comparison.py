@@ -7,14 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.inspect.shown.shown_comparison import AUTOMATIC, ShownComparison
+from core.wings.geometry.comparison.shown import AUTOMATIC, ShownComparison
 from workbench.bench import Bench
 from workbench.language import tr
+from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.scan import InspectScan
-from workbench.pages.inspect.stage import ComparisonButtons, ComparisonFacts, comparison_buttons
-from workbench.work import jobs
+from workbench.wing import Coloured
+from workbench.wings.geometry import jobs
+from workbench.wings.geometry.buttons import ComparisonButtons, ComparisonFacts, comparison_buttons
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from workbench.work.tasks import Task
 
 
@@ -34,9 +39,9 @@ class InspectComparison(QObject):
         self.align = AUTOMATIC
         self.diameter_mm: float | None = None
         self.significant_only = True
-        self.beside = False
+        self.shows_other = False
+        self._coloured: Coloured | None = None
         self._running: Task | None = None
-        self.serial = 0
 
     @property
     def buttons(self) -> ComparisonButtons:
@@ -51,9 +56,28 @@ class InspectComparison(QObject):
         )
 
     @property
-    def look(self) -> tuple[object, ...]:
-        """Key of the colours that the comparison gives the surface: equal keys, equal colours."""
-        return self.serial, self.significant_only
+    def coloured(self) -> Coloured | None:
+        """Deviations that colour the surface, without those that are not significant if so chosen; None for none."""
+        shown, only = self.shown, self.significant_only
+        if shown is not None and self._coloured is None:
+            self._coloured = Coloured(
+                tr("deviation from {other}", other=shown.other),
+                shown.range_mm,
+                shown.of_points(significant_only=only),
+                shown.of_mesh(significant_only=only),
+                tr("not significant") if only else "",
+            )
+        return self._coloured
+
+    @property
+    def why_not(self) -> str:
+        """Reason why the surface cannot be coloured by the deviation; "" if it can."""
+        return "" if self.shown is not None else self.buttons.look
+
+    @property
+    def beside(self) -> NDArray[np.float32] | None:
+        """Points (M, 3) in mm of the other surface, if they are to be shown beside the scan."""
+        return self.shown.other_points if self.shown is not None and self.shows_other else None
 
     def compare(self, other: Path) -> None:
         """Compare the scan with the surface in the file or folder `other`, in the background."""
@@ -64,7 +88,7 @@ class InspectComparison(QObject):
 
         def done(shown: Any) -> None:
             if folder == self._bench.model.folder:
-                self.shown, self.serial = shown, self.serial + 1
+                self.shown, self._coloured = shown, None
                 self.made.emit()
 
         self._running = self._bench.run_long(
@@ -76,6 +100,7 @@ class InspectComparison(QObject):
             self.diameter_mm or 0.0,
             label=tr("Comparing surfaces"),
             on_done=done,
+            writes=True,
         )
         self._running.ended.connect(self._ended)
         self.changed.emit()
@@ -91,12 +116,12 @@ class InspectComparison(QObject):
 
     def show_significant_only(self, only: bool) -> None:
         """Grey out places whose deviation is not significant, or not."""
-        self.significant_only = only
+        self.significant_only, self._coloured = only, None
         self.changed.emit()
 
     def show_beside(self, beside: bool) -> None:
         """Show the other surface beside the scan, or not."""
-        self.beside = beside
+        self.shows_other = beside
         self.changed.emit()
 
     def take_away(self) -> None:
@@ -110,13 +135,19 @@ class InspectComparison(QObject):
             folder,
             label=tr("Taking the comparison away"),
             on_done=lambda _: self.forget() if folder == self._bench.model.folder else None,
+            writes=True,
         )
 
     def forget(self) -> None:
         """Drop the comparison shown, as another scan or another project is shown."""
-        self.shown, self.other, self.serial = None, None, self.serial + 1
+        self.shown = self.other = self._coloured = None
         self.changed.emit()
 
     def _ended(self) -> None:
         self._running = None
         self.changed.emit()
+
+
+def comparison_of(presenter: InspectPresenter) -> InspectComparison:
+    """Make the comparison of the scan that the page shows."""
+    return InspectComparison(presenter.bench, presenter.scan)

@@ -27,7 +27,6 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.errors import InputError
-from core.inspect.shown.shown_comparison import Changed
 from core.messages import Message, label
 from core.model import Pose
 from core.model.arrays import Array
@@ -36,6 +35,7 @@ from core.model.robust import MAD_TO_SD
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangles import Triangles
+from core.wings.geometry.comparison.shown import Changed
 
 DETECTED = 1.96
 """Standard uncertainties that a deviation exceeds by chance in 5 % of the places."""

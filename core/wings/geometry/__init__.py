@@ -1,0 +1,1 @@
+"""Geometry: the measured part against another surface."""

@@ -1,0 +1,1 @@
+"""The scan compared with another surface, place by place."""
