@@ -51,16 +51,16 @@ def camera_poses(
     return poses
 
 
-def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator) -> list[Pose]:
+def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator, *, first: int = 0) -> list[Pose]:
     """Make a pose of a plate for each of `centres` (3,) in mm near its middle, so that the fan shines on it.
 
     Moved aside by up to a third of the plate, so that lines fall on all parts of it, and tilted to 32°; `outline`
-    (K, 3) are the plate's corners in its own frame.
+    (K, 3) are the plate's corners in its own frame. `first` is how many poses were made before: these are others.
     """
     size = np.ptp(outline, axis=0)[:2]
     middle = outline.mean(axis=0)
     poses = []
-    for pose, centre in enumerate(centres):
+    for pose, centre in enumerate(centres, first):
         angle = 2 * np.pi * pose / max(len(centres), 1)
         shift = size * [0.35 * np.cos(2 * angle + 0.5), 0.22 * np.sin(angle + 0.7)] + rng.normal(0, 3.0, 2)
         tilt = np.radians(PLANE_LEAST_TILT_DEG + PLANE_TILT_RANGE_DEG * (pose * GOLDEN_SHARE % 1))

@@ -32,6 +32,9 @@ from core.simulate.sample import sample_scenario, simulated_project
 FAST = SourceSettings(rate_hz=0.0)
 """Each frame as soon as it is made and the last one was looked at: what is recorded does not hang on the machine."""
 
+MOST_FRAMES = 1500
+"""Two minutes: three times what a recording takes."""
+
 
 def is_enough(event: LiveEvent) -> bool:
     """Whether a page would ask for *Stop* on this event."""
@@ -46,15 +49,27 @@ def is_enough(event: LiveEvent) -> bool:
 
 
 def recorded(request: LiveRequest) -> int:
-    """Record until the page asks for *Stop*; how many pictures are kept."""
+    """Record until the page asks for *Stop*; how many pictures are kept.
+
+    Raises
+    ------
+    RuntimeError
+        If it has not asked for it after MOST_FRAMES, and never might.
+    """
     commands: list[Command] = []
+    last = ""
 
     def hear(event: LiveEvent) -> None:
-        if is_enough(event):
+        nonlocal last
+        if isinstance(event, LiveView) and event.index > MOST_FRAMES:
+            last = str(getattr(event.detail, "sentence", ""))
+        if last or is_enough(event):
             commands.append(Stop())
 
     ended = run_live(request, lambda: commands.pop(0) if commands else None, hear, lambda: True)
     assert ended.error is None, ended.error
+    if last:
+        raise RuntimeError(f"{request.step}: not enough after {MOST_FRAMES} frames, and the page says: {last}")
     return ended.recorded
 
 

@@ -36,6 +36,9 @@ CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
 """Of the camera target: poses, time in s of a rest at least, and of a move between two."""
 PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
 """The same of the plane target."""
+PLANE_ROUNDS = 3
+"""Of such poses, each round tilted otherwise, before its motion repeats: of some no square is found, as a line of the
+fan lies along its edge, others are tilted alike, and a calibration would wait for one more for ever."""
 CHECK_RESTS = 5
 """Poses at which a plate rests, more than a calibration asks for; times in s of a rest, at least, and of a move."""
 
@@ -103,7 +106,7 @@ class LiveScene:
         self._plates["check"] = self._plates["planes"]
         self._motions: dict[Step, PlateMotion] = {
             "camera": self._camera_motion(),
-            "planes": self._plane_motion(PLANE_RESTS, "live plane poses"),
+            "planes": self._plane_motion(PLANE_RESTS, "live plane poses", PLANE_ROUNDS),
             "check": self._plane_motion(CHECK_RESTS, "live check poses"),
         }
         reach = sweep_range(self._scene, aim_of(self._scene))
@@ -165,9 +168,9 @@ class LiveScene:
             ) from error
         return PlateMotion(poses, outline.mean(axis=0), CAMERA_REST_S, CAMERA_MOVE_S)
 
-    def _plane_motion(self, rests: int, kind: str) -> PlateMotion:
-        outline = self._plates["planes"].outline
-        poses = plane_poses(fan_centres(self.rig, rests), outline, self._generator(kind))
+    def _plane_motion(self, rests: int, kind: str, rounds: int = 1) -> PlateMotion:
+        outline, centres, rng = self._plates["planes"].outline, fan_centres(self.rig, rests), self._generator(kind)
+        poses = [pose for number in range(rounds) for pose in plane_poses(centres, outline, rng, first=number * rests)]
         return PlateMotion(poses, outline.mean(axis=0), PLANE_REST_S, PLANE_MOVE_S)
 
     def _generator(self, kind: str) -> np.random.Generator:
