@@ -29,7 +29,7 @@ from core.calibrate.camera.adjustment import (
     with_shape,
 )
 from core.calibrate.camera.board_fit import BoardFit
-from core.calibrate.camera.bundle import Bundle, Observed, refine_robustly, residual_lengths
+from core.calibrate.camera.bundle import Bundle, Observed, refine, refine_robustly, residual_lengths
 from core.calibrate.camera.covariance import SharedErrorFactors
 from core.calibrate.camera.coverage import coverage, tilt_range
 from core.calibrate.camera.options import CameraOptions
@@ -160,6 +160,7 @@ def _calibrated(
     covariance, shape, widening = _covariance(solved, counted, free, fit)
     if skew_left_out:
         covariance = _with_skew(covariance, solved, counted, free, fit)
+        widening = _without_skew_left_out(widening, solved, counted, free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
     qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
@@ -237,6 +238,24 @@ def _with_skew(
     wider = np.zeros_like(covariance)
     wider[np.ix_(known, known)] = both[: len(known), : len(known)]
     return wider
+
+
+def _without_skew_left_out(
+    widening: SharedErrorFactors, bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp], fit: BoardFit
+) -> SharedErrorFactors:
+    """The factors less what γ explains that is left at 0: errors of the model are none that a view's corners share.
+
+    They are told; σ stays as wide as it is.
+    """
+    if not widening.err_together:
+        return widening
+    known = np.union1d(free, [SKEW])
+    with_skew = refine(bundle, fit.shaped(counted), known)
+    try:
+        _, explained = fit.covariance(with_skew, counted, known, freedom_of(counted, known))
+    except np.linalg.LinAlgError:
+        return widening
+    return replace(widening, within_views=min(widening.within_views, explained.within_views))
 
 
 def _summary(

@@ -21,6 +21,10 @@ from core.calibrate.results import CameraCalibration
 from core.model import Camera
 from core.model.arrays import Array
 
+MUCH_WIDER = 1.5
+"""Factor on the standard deviations for errors that corners share, from which on it is worth a note,"""
+_CHANCE_SDS = 3.0
+"""unless chance alone may make more of a few views, which is so many of its standard deviations."""
 _SINGULAR = 1e-13
 """Smallest eigenvalue over the largest, of the scaled information, below which views do not determine the parameters:
 some hundred units of rounding."""
@@ -47,6 +51,11 @@ class SharedErrorFactors:
     across_views: float
     over_picture: float
     chance: float
+
+    @property
+    def err_together(self) -> bool:
+        """Whether corners of a view surely share so much of their errors that it is worth a note."""
+        return self.within_views > max(MUCH_WIDER, 1 + _CHANCE_SDS * self.chance)
 
     @property
     def total(self) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
-from core.calibrate.camera.covariance import SharedErrorFactors
+from core.calibrate.camera.covariance import MUCH_WIDER, SharedErrorFactors
 from core.calibrate.camera.coverage import disagreement_mm, empty_regions, tilt
 from core.calibrate.camera.picture_residuals import notes_on_picture
 from core.calibrate.camera.screening import Verdict, screen
@@ -29,10 +29,6 @@ _ENOUGH_TILT_RANGE = np.deg2rad(25.0)
 """rad between two views: below, the focal length stays uncertain."""
 _WORSE_VIEW = 3.0
 """Times the usual RMS of the views."""
-_MUCH_WIDER = 1.5
-"""Factor on the standard deviations for errors that corners share, unless chance alone may make more of a few views,"""
-_CHANCE_SDS = 3.0
-"""which is so many of its standard deviations."""
 _BOWED_MM = 0.05
 """Departure from flat that is worth a note."""
 _LEAST_HALVED = 6
@@ -131,10 +127,9 @@ def notes_on(calibration: CameraCalibration, widening: SharedErrorFactors) -> tu
     if shape.surely_bowed and shape.departure_mm > _BOWED_MM:
         notes.append(note_of("camera.bowed_target", bow=shape.departure_mm))
     notes += notes_on_picture(calibration)
-    limit = max(_MUCH_WIDER, 1 + _CHANCE_SDS * widening.chance)
-    if widening.within_views > limit:
+    if widening.err_together:
         notes.append(note_of("camera.corners_err_together", times=widening.within_views))
-    if widening.across_views > _MUCH_WIDER:
+    if widening.across_views > MUCH_WIDER:
         notes.append(note_of("camera.corners_err_alike", times=widening.across_views))
     return tuple(notes)
 

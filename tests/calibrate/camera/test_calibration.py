@@ -90,6 +90,18 @@ def test_standard_deviations_stay_honest_when_corners_of_a_view_err_together():
     assert sum(any("err " in str(note) for note in calibration.notes) for calibration in plain) <= 1
 
 
+@pytest.mark.parametrize(("bend_px", "told"), [(0.0, False), (0.06, True)])
+def test_a_skew_that_is_left_out_is_no_error_that_corners_of_a_view_share(monkeypatch, bend_px, told):
+    """Nothing is wrong with target and pictures where left-out views do not show clearly enough that γ is there."""
+    monkeypatch.setattr("core.calibrate.camera.calibration.skew_helps", lambda *_: False)
+    views = synthetic_views(1, bend_px=bend_px)
+    left_out, stated = (calibrate_camera(views, SIZE, CameraOptions(skew=skew)) for skew in (None, False))
+    codes = {note.code for note in left_out.notes}
+    assert left_out.camera.matrix[0, 1] == 0.0 and ("camera.corners_err_together" in codes) == told
+    assert left_out.sd["u0"] >= stated.sd["u0"]
+    assert "camera.corners_err_together" in {note.code for note in stated.notes}  # who states it, hears of it
+
+
 @pytest.mark.accuracy
 def test_standard_deviations_stay_honest_when_the_target_is_printed_wrong():
     squares = []
