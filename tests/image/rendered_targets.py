@@ -102,6 +102,18 @@ def square(side: float) -> Pattern:
     return pattern
 
 
+def rectangle(width: float, height: float, line: float = 0.0) -> Pattern:
+    """Dark throughout, or an outline of `line`."""
+
+    def pattern(x, y):
+        dark = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+        if line:
+            dark &= (x < line) | (x >= width - line) | (y < line) | (y >= height - line)
+        return np.where(dark, 0.0, 1.0)
+
+    return pattern
+
+
 def circles(points: np.ndarray, radius: float) -> Pattern:
     def pattern(x, y):
         light = np.ones(len(x))

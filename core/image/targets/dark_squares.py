@@ -32,18 +32,21 @@ class DarkSquares:
     cut_off: int
 
 
-def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
-    """Find dark, convex, filled quadrilaterals with light all round them; stripes of light may cross them."""
+def dark_squares(picture: NDArray[np.uint8], line: float = 0.0) -> DarkSquares:
+    """Find dark, convex quadrilaterals with light all round them; stripes of light may cross them.
+
+    They are dark throughout, or outlines as wide as `line`, a share of the root of their area.
+    """
     cut_off = 0
     found: list[Array] = []
     for width in STRIPE_WIDTHS:
         opened = picture if width == 1 else without_stripes(picture, width)
         darkest, lightest = level_quantiles(opened[::4, ::4], 0.01, 0.99)
         for mask in _thresholded(opened):
-            whole, cut = _quadrilaterals(opened, mask, lightest - darkest)
+            whole, cut = _quadrilaterals(opened, mask, lightest - darkest, line)
             cut_off = max(cut_off, cut)
             large = [quad for quad in whole if _sides(quad).min() >= 3 * width]
-            found.extend(quad for quad in large if width == 1 or _mostly_dark(picture, opened, quad))
+            found.extend(quad for quad in large if width == 1 or line or _mostly_dark(picture, opened, quad))
     found.sort(key=lambda quad: -cv2.contourArea(quad.astype(np.float32)))
     largest: list[Array] = []
     for quad in found:  # what lies within another is the same square, or what stripes leave of it
@@ -64,7 +67,9 @@ def _thresholded(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
     yield np.where(smooth < 0.8 * mean, 255, 0).astype(np.uint8)
 
 
-def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8], contrast: float) -> tuple[list[Array], int]:
+def _quadrilaterals(
+    picture: NDArray[np.uint8], mask: NDArray[np.uint8], contrast: float, line: float
+) -> tuple[list[Array], int]:
     """Whole dark quadrilaterals of `mask`, and how many convex dark regions the picture's border cuts."""
     found, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
     contours = [np.asarray(contour, dtype=np.int32) for contour in found]
@@ -84,7 +89,9 @@ def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8], contras
         if len(corners) != 4 or not 0.9 < area / cv2.contourArea(corners) < 1.1:
             continue
         quad = clockwise(corners.reshape(4, 2).astype(np.float64))
-        if _sides(quad).min() >= LEAST_SIDE and _dark_on_light(picture, quad, contrast):
+        if _sides(quad).min() < LEAST_SIDE:
+            continue
+        if _outlined(picture, quad, contrast, line) if line else _dark_on_light(picture, quad, contrast):
             whole.append(quad)
     return whole, cut
 
@@ -115,6 +122,24 @@ def _dark_on_light(picture: NDArray[np.uint8], quad: Array, contrast: float) -> 
     inside = _levels(picture, np.stack([sides - outwards[:, None], centre + 0.4 * (sides - centre)]))
     step = outside - median(inside)
     return step > 0.15 * contrast and float(np.mean(inside < outside - 0.4 * step)) > 0.8
+
+
+def _outlined(picture: NDArray[np.uint8], quad: Array, contrast: float, line: float) -> bool:
+    """Whether a dark line as wide as `line`, a share of the root of the area, runs within the sides, between light."""
+    width = line * float(np.sqrt(cv2.contourArea(quad.astype(np.float32))))
+    shares = np.linspace(0.15, 0.85, 25)[:, None]
+    along = np.roll(quad, -1, axis=0) - quad
+    inwards = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
+    sides = quad[:, None] + shares * along[:, None]
+    clear = max(2.0, 0.5 * width)
+    light = min(
+        median(level)
+        for places in (sides - clear * inwards[:, None], sides + (width + clear) * inwards[:, None])
+        for level in _levels(picture, places)
+    )
+    dark = _levels(picture, sides + 0.5 * width * inwards[:, None])
+    step = light - median(dark)
+    return step > 0.15 * contrast and float(np.mean(dark < light - 0.4 * step)) > 0.8
 
 
 def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from core.image.targets.black_square import detect_black_square
 from core.image.targets.charuco import detect_charuco
 from core.image.targets.checkerboard import detect_checkerboard
 from core.image.targets.circle_grid import detect_circle_grid
-from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.image.targets.picture import Picture, check_exposure
+from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Rectangle, Target
+from core.image.targets.picture import Picture, check_exposure, only_within
+from core.image.targets.rectangle import detect_rectangle
 from core.image.targets.target_view import TargetView
 from core.model import Camera
 
@@ -22,6 +26,7 @@ def detect(
     *,
     thorough: bool = True,
     plane_only: bool = False,
+    region_px: ArrayLike | None = None,
 ) -> TargetView:
     """Find the points of `target` in `picture` (H, W) to sub-pixel; TargetNotFound if it is not seen.
 
@@ -38,6 +43,8 @@ def detect(
         Whether to take a second or more over a checkerboard that is hard to find: not for live pictures.
     plane_only
         Whether the target's plane is enough: any part of a checkerboard will do then that has one pose before `camera`.
+    region_px
+        Polygon (K, 2) in px within which alone the target is looked for; None: everywhere.
 
     Raises
     ------
@@ -49,6 +56,8 @@ def detect(
         If the picture is not 2-D uint8 or uint16.
     """
     check_exposure(picture, name)
+    if region_px is not None:
+        picture = only_within(picture, np.asarray(region_px, dtype=np.float64))
     match target:
         case Checkerboard():
             view = detect_checkerboard(target, picture, name, camera if plane_only else None, thorough=thorough)
@@ -58,4 +67,6 @@ def detect(
             view = detect_circle_grid(target, picture, name, camera)
         case BlackSquare():
             view = detect_black_square(target, picture, name, camera)
+        case Rectangle():
+            view = detect_rectangle(target, picture, name, camera)
     return replace(view, target=target)

@@ -64,10 +64,13 @@ class PictureSpline:
         return np.where(inside, levels, np.nan)
 
 
-def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float) -> Profiles:
-    """Find the edges on grey profiles through `uv` (K, 2) along `normal` (K, 2), which points from dark to bright."""
-    half = round(half_width / STEP)
-    t = np.arange(-half - _REACH, half + _REACH + 1) * STEP
+def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float, unit: float = 1.0) -> Profiles:
+    """Find the edges on grey profiles through `uv` (K, 2) along `normal` (K, 2), which points from dark to bright.
+
+    They are looked for within `half_width` px. Sampling and filter are in pixels times `unit`.
+    """
+    half, pitch = round(half_width / unit / STEP), STEP * unit
+    t = np.arange(-half - _REACH, half + _REACH + 1) * pitch
     levels = spline.at(uv[:, None, :] + t[None, :, None] * normal[:, None, :])
     taps = np.arange(-_REACH, _REACH + 1) * STEP
     kernel = taps / FILTER**2 * np.exp(-0.5 * (taps / FILTER) ** 2)
@@ -85,8 +88,8 @@ def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float)
     valid &= (top > 0) & (bend < 0)
     shift = np.where(valid, 0.5 * (before - after) / np.where(valid, bend, -1.0), 0.0)
     return Profiles(
-        offset=(middle - half + shift) * STEP,
-        steepness=top,
+        offset=(middle - half + shift) * pitch,
+        steepness=top / unit,
         dark=levels[:, 4:10].mean(axis=1),
         bright=levels[:, -10:-4].mean(axis=1),
         fall=(np.maximum.accumulate(levels, axis=1) - levels).max(axis=1),

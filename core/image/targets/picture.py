@@ -7,6 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from core.image.targets.target_view import TargetNotFound
 from core.messages import Message
@@ -120,6 +121,16 @@ def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]
     """Remove bright lines narrower than `width` px from a picture by grey opening; dark shapes keep their outline."""
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
     return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
+
+
+def only_within(picture: Picture, polygon: Array) -> Picture:
+    """Cover all of a picture (H, W) outside a `polygon` (K, 2) in px by the nearest grey levels in it: no new edges."""
+    within = cv2.fillPoly(np.zeros(picture.shape, np.uint8), [np.rint(polygon).astype(np.int32)], 1)
+    if not within.any():
+        return picture
+    rows, columns = distance_transform_edt(within == 0, return_distances=False, return_indices=True)
+    covered: Picture = picture[rows, columns]
+    return covered
 
 
 def noise_of(picture: Picture, uv: Array) -> float:
