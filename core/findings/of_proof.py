@@ -91,6 +91,7 @@ REASONS: Mapping[str, Message] = {
     "calibration_lapsed": Message("doubt.calibration_lapsed", "the calibration was too old"),
     "never_checked": Message("doubt.never_checked", "camera and laser were never checked"),
     "check_lapsed": Message("doubt.check_lapsed", "the check of camera and laser was too old"),
+    "planes_disagree": Message("doubt.planes_disagree", "fan and known planes disagree"),
     "check_failed": Message("doubt.check_failed", "the check of camera and laser failed"),
     "history_unreadable": Message("doubt.history_unreadable", "the history of the rig's checks cannot be read"),
     "camera_unsettled": Message("doubt.camera_unsettled", "the camera's calibration had not settled"),

@@ -48,6 +48,27 @@ ROWS = (
             "In the {place} of the picture the sweeps lie {mm:.2g} mm {where} than the fan's light, more than its "
             "speckle explains: laser or camera are not as calibrated, or something moved after the reference was "
             "taken. U need not contain it: check the rig, and scan again.", fact="fan_disagrees"),
+    # Known planes
+    Finding("scan.board_not_found", Weight.CAUTION, Effect.NONE,
+            "The board {board} is not used: {reason}."),
+    Finding("scan.board_picture_left_out", Weight.CAUTION, Effect.NONE,
+            "A picture of the board {board} is not used: {reason}."),
+    Finding("scan.board_moved", Weight.CAUTION, Effect.NONE,
+            "The board {board} moved between its pictures, by {mm:.2g} mm and more than noise: it is not used. Let it "
+            "lie as it is from the first picture to the last frame."),
+    Finding("scan.board_not_met", Weight.CAUTION, Effect.NONE,
+            "No sweep is seen on the board {board}: it is not used. Let sweeps cross it."),
+    Finding("scan.board_off", Weight.CAUTION, Effect.NONE,
+            "The board {board} moved or is bent: the fan, which agrees with the others, has it {mm:.2g} mm aside and "
+            "turned by {degrees:.2g}°, {times:.1f} times what is expected. It is not used."),
+    Finding("scan.checked_by_planes", Weight.INFORMATION, Effect.NONE,
+            "Checked in this scan: the fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), so camera and "
+            "fixed laser are as calibrated."),
+    Finding("scan.planes_disagree", Weight.GRAVE, Effect.NO_PROOF,
+            "Fan and {boards:and} disagree in this scan: {mm:.2g} mm and {degrees:.2g}°, {times:.1f} times what is "
+            "expected. Most likely {cause}. The scan is measured by the fan alone: check the rig with the plane "
+            "target.",
+            fact="planes_disagree"),
     # What fixes the scale of heights
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,
             "The relief under the fan fixes the scale to {percent:.2g} %."),

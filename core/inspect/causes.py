@@ -42,6 +42,11 @@ class Cause(Enum):
         "inspection.cause_change_charted", "change since the calibration (control chart of the rig)"
     )
     CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
+    KNOWN_POSE = Message("inspection.cause_known_pose", "known planes: pose")
+    KNOWN_FLATNESS = Message("inspection.cause_known_flatness", "known planes: flatness")
+    KNOWN_FLATNESS_ASSUMED = Message("inspection.cause_known_flatness_assumed", "known planes: flatness (assumed)")
+    KNOWN_SIZE = Message("inspection.cause_known_size", "known planes: size")
+    KNOWN_SIZE_ASSUMED = Message("inspection.cause_known_size_assumed", "known planes: size (assumed)")
     SKEWED_FAN = Message("inspection.cause_skewed_fan", "light of the fan, skewed otherwise than in its calibration")
 
     PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
@@ -94,6 +99,8 @@ OF_TARGET = frozenset(
 """What the warmth of the calibration target does: the same to all that is measured with one calibration."""
 FROM_BELOW = frozenset((Cause.LIGHT_FROM_BELOW, Cause.LIGHT_FROM_BELOW_ASSUMED))
 """Light from below the surface that is not seen."""
+OF_SCAN = frozenset((Cause.KNOWN_POSE,))
+"""What errs anew in every scan, and so is not the same as in a master's."""
 CHANGES = frozenset((Cause.CHANGE, Cause.CHANGE_ASSUMED, Cause.CHANGE_CHARTED))
 """What may have changed since the calibration, where nothing on the day of the scan has measured it."""
 
@@ -109,6 +116,11 @@ CALIBRATIONS: Mapping[str, Cause] = {
     "charted change": Cause.CHANGE_CHARTED,
     "readjusted": Cause.READJUSTED,
     "skewed fan": Cause.SKEWED_FAN,
+    "known pose": Cause.KNOWN_POSE,
+    "known flatness": Cause.KNOWN_FLATNESS,
+    "assumed known flatness": Cause.KNOWN_FLATNESS_ASSUMED,
+    "known size": Cause.KNOWN_SIZE,
+    "assumed known size": Cause.KNOWN_SIZE_ASSUMED,
 }
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 

@@ -34,6 +34,7 @@ from core.scan.method import Method, ReconstructOptions
 from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
+from core.scan.network.geometry import CrossingRays
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
@@ -42,8 +43,16 @@ from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, largest_rigid_interva
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
-from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces
-from core.scan.sweeps.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
+from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces, free_turns
+from core.scan.sweeps.locate import (
+    LocatedSweeps,
+    by_sweep,
+    locate_each,
+    locate_together,
+    number_fan_lines,
+    numbered,
+    sweeping_frames,
+)
 from core.scan.sweeps.moving import hand_notes, read_out_of
 
 MANY_LOST = 0.1
@@ -99,11 +108,15 @@ def reconstruct(
     progress("network", 0, 3)
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
-    control = Control(fan, tuple(planes) if _together(options) else ())
-    if control.planes:
-        on_planes, of_plane = points_on_planes(features, control.planes, camera)
+    control = Control(fan)
+    if planes and _together(options):
+        on_planes, of_plane = points_on_planes(features, planes, camera)
+        firm = _held_from_turning(crossings.followed_by(on_planes), camera)[len(crossings) :]
+        on_planes, of_plane = on_planes.select(firm), of_plane[firm]
+        met = np.unique(of_plane)
+        control = Control(fan, tuple(planes[number] for number in met))
         crossings = crossings.followed_by(on_planes)
-        line = np.concatenate([line, fan.lines + of_plane])
+        line = np.concatenate([line, fan.lines + np.searchsorted(met, of_plane)])
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
     if not fan.lines:
         _require_planes(crossings, line, control, camera)
@@ -184,6 +197,18 @@ def reconstruct(
         crossing_lines=line,
         planes=_plane_fits(control, crossings, line, solved, camera),
     )
+
+
+def _held_from_turning(crossings: CrossingTable, camera: Camera) -> NDArray[np.bool_]:
+    """Mask (M,) of the crossings of sweeps that meet more than one straight line.
+
+    A sheet known along one line alone is free to turn about it, and would fall onto the board that it is seen on.
+    """
+    if not len(crossings):
+        return np.zeros(0, dtype=np.bool_)
+    frames = sweeping_frames(crossings)
+    free = free_turns(by_sweep(crossings, frames), CrossingRays.of(crossings, camera), len(frames))
+    return ~np.isin(crossings.a, frames[free.any(axis=1)])
 
 
 def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: Control, camera: Camera) -> None:

@@ -43,14 +43,8 @@ def scan_evidence(scan: ScanResult, camera: Camera, fan: Fan | Control, deviatio
 
     `scan` is the solution by the network with `camera` and `fan`, or with a control.
     """
-    control, line = Control.of(fan), scan.crossing_lines
-    table = by_sweep(scan.crossings.select(scan.of_solved), scan.sweep_frames)
-    geometry = CrossingRays.of(table, camera)
-    errors, line = LineErrors.of(table), line[scan.of_solved]
-    equations = Adjustment(table, geometry, line, control, len(scan.pis), errors, scan.read_out)
-    solution = replace(equations.start(), pis=scan.pis)
-    for _ in range(_ROUNDS):
-        solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
+    control = Control.of(fan)
+    equations, solution = settled_equations(scan, camera, control)
     changes = np.array(
         [
             change_of_misclosures(
@@ -66,6 +60,18 @@ def scan_evidence(scan: ScanResult, camera: Camera, fan: Fan | Control, deviatio
     scatter = max(1.0, scan.scale) ** 2 * (noise.T @ noise + cells.T @ cells)
     gradient = -changes.T @ (weight * solution.residuals * solution.sigma)
     return Evidence(changes.T @ felt, scatter, gradient)
+
+
+def settled_equations(scan: ScanResult, camera: Camera, control: Control) -> tuple[Adjustment, Solution]:
+    """Make the equations that a scan was solved with, and its solution with the weights that it ended with."""
+    table = by_sweep(scan.crossings.select(scan.of_solved), scan.sweep_frames)
+    geometry = CrossingRays.of(table, camera)
+    errors, line = LineErrors.of(table), scan.crossing_lines[scan.of_solved]
+    equations = Adjustment(table, geometry, line, control, len(scan.pis), errors, scan.read_out)
+    solution = replace(equations.start(), pis=scan.pis)
+    for _ in range(_ROUNDS):
+        solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
+    return equations, solution
 
 
 def change_of_misclosures(

@@ -140,7 +140,8 @@ class PointErrors:
             lacking.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
         if not self.knows("camera"):
             lacking.append(Message("gauge.without_camera", "that of the camera"))
-        if not any(map(self.knows, FANS)):
+        has_fan = self.common is None or self.common.fans.shape[1] > 0
+        if has_fan and not any(map(self.knows, FANS)):
             lacking.append(Message("gauge.without_fan", "that of the fan"))
         return tuple(lacking)
 

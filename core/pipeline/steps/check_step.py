@@ -25,7 +25,7 @@ from core.calibrate.change import (
     lasting,
     stability_in_use,
 )
-from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
+from core.calibrate.deviations import UNEXPLAINED, Deviation
 from core.calibrate.drift import NO_DRIFT, widened_evidence
 from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
@@ -58,6 +58,7 @@ from core.pipeline.steps.stated_change import (
 from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
+from core.scan.known_planes.plane_deviations import followed_by_planes
 from core.second_process import SecondProcess
 
 SAME_DAY = 1.0
@@ -221,6 +222,8 @@ def since_calibration(
     check: Sequence[PoseFeatures],
     scanned: Acquisition | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
+    *,
+    by_planes: bool = False,
 ) -> Change:
     """Estimate how camera and fan may have changed from calibration to scan, as far as no picture excludes it.
 
@@ -234,13 +237,17 @@ def since_calibration(
         By which camera and when the frames were taken; None: not known.
     of_measured
         What the pictures that are measured say of deviations; None: nothing.
+    by_planes
+        Whether known planes in the scan show that camera and fan are as calibrated: a passed check of that hour.
     """
     recording_set = fresh_check(recording_set, calibration.fan)
     apart = _days_apart(recording_set)
     if apart <= SAME_DAY:
-        return judged(recording_set, calibration, check, of_measured, at_scan=True, scanned=scanned).change
+        return judged(
+            recording_set, calibration, check, of_measured, at_scan=True, scanned=scanned, by_planes=by_planes
+        ).change
     unchecked = replace(recording_set, check=())
-    change = judged(unchecked, calibration, (), of_measured, at_scan=True, scanned=scanned).change
+    change = judged(unchecked, calibration, (), of_measured, at_scan=True, scanned=scanned, by_planes=by_planes).change
     other_day = note_of("check.another_day", days=apart)
     return replace(change, left_out=(other_day,))
 
@@ -315,17 +322,22 @@ def judged(
     *,
     at_scan: bool = False,
     scanned: Acquisition | None = None,
+    by_planes: bool = False,
 ) -> Judged:
     """Judge how camera and fan have changed since calibration, by the poses of an interim `check` and by the scan.
 
     When the check was taken, or `at_scan`, when the frames were; `scanned` says by which camera and when these were
-    taken, None where it is not known. `of_measured` says how well deviations agree with the scan.
+    taken, None where it is not known. `of_measured` says how well deviations agree with the scan, `by_planes` whether
+    known planes in it show that camera and fan are as calibrated.
     """
-    camera, fan = calibration.camera.camera, calibration.fan
-    deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
+    camera, fan, control = calibration.camera.camera, calibration.fan, calibration.control
+    deviations = (
+        *calibration.deviations,
+        *followed_by_planes(changes(camera, fan.fan), camera, control, fan.scale_sd),
+    )
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
     checked: tuple[CheckedPose, ...] = ()
-    agree = _readjusted_on_the_day(recording_set, calibration.fan)
+    agree = by_planes or _readjusted_on_the_day(recording_set, calibration.fan)
     if recording_set.check:
         names = {pair.name for pair in recording_set.check}
         seen = tuple(pose for pose in check if pose.name in names)
@@ -339,7 +351,7 @@ def judged(
     stated = _stated(recording_set, fan)
     sitting = sitting_of(recording_set.rig, fan, scanned) if at_scan and not recording_set.check else None
     if sitting is not None:
-        change = judge(camera, fan.fan, deviations, evidence, sitting.stability)
+        change = judge(camera, fan.fan, deviations, evidence, sitting.stability, planes=control.plane_pis)
     if sitting is not None and change.p >= P_TOLD:
         change = replace(change, checked=True, sitting_hours=sitting.hours)
     else:  # frames that show a change since the planes' calibration are not of its sitting, whatever their log says
@@ -351,6 +363,7 @@ def judged(
             stated.known,
             charted_spread(recording_set, calibration),
             stated.guess if agree else stability_by_pictures(deviations, evidence, stated.guess),
+            control.plane_pis,
         )
         change = replace(change, checked=agree)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]

@@ -11,6 +11,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan, stored_poses_of
+from core.pipeline.steps.scan.known_planes import see_boards
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
@@ -61,9 +62,13 @@ def scan_step(
     require_frames(recording_set, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
+        boards = see_boards(log.pictures, calibration, progress)
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
         log.settings.update({**settings.run_settings("scan"), **log.pictures.laser_channel("scan").settings})
-        solved = solved_scan(features, calibration, settings.solving(recording_set.rig.row_time_us), progress)
+        solved = solved_scan(
+            features, boards.calibration, settings.solving(recording_set.rig.row_time_us), progress, boards.notes
+        )
+        calibration = solved.calibration
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (
             check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
@@ -71,13 +76,12 @@ def scan_step(
             else check
         )
         logged = recording_set.log("scan")
-        change_by = partial(
-            since_calibration, recording_set, calibration, checked, logged.acquisition(recording_set.frames)
-        )
+        scanned = logged.acquisition(recording_set.frames)
+        change_by = partial(since_calibration, recording_set, calibration, checked, scanned, by_planes=solved.checked)
         kept = stored_poses_of(work, calibration)
         section, of_the_day = (
             section_since(calibration, kept.stripes, features.fan),
-            facts_of_the_day(work, calibration),
+            facts_of_the_day(work, calibration, checked=solved.checked),
         )
         judgement = judged_scan(solved, change_by, of_the_day, section, settings.method, progress)
         cloud, mesh = shaped()

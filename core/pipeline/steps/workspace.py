@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
@@ -30,6 +31,7 @@ from core.memory import give_back
 from core.messages import Command, Message
 from core.model import Camera
 from core.scan.known_planes.known_plane import Control, KnownPlane
+from core.scan.known_planes.plane_deviations import followed_by_planes
 from core.scan.results import FrameRecord
 
 _MADE_IN_ORDER = tuple(made for step in GRAPH for made in step.makes)
@@ -55,6 +57,12 @@ class Calibration:
     def control(self) -> Control:
         """What the sweeps of a scan are tied to: fan and known planes."""
         return Control(self.fan.fan, self.planes)
+
+    @property
+    def deviations(self) -> tuple[Deviation, ...]:
+        """Deviations of camera and fan by their calibrations, and how known planes follow them."""
+        of_calibration = calibration_deviations(self.camera, self.fan)
+        return followed_by_planes(of_calibration, self.camera.camera, self.control, self.fan.scale_sd)
 
     @property
     def id(self) -> str:

@@ -44,10 +44,10 @@ class KnownPlane:
         (H, W) True on what is printed on it, and some px around; None: nothing is.
     scale_sd
         Relative standard uncertainty of the board's size.
-    scale_assumed
-        Whether nobody has stated that.
-    print_of_target
-        Whether it was printed with the plane target, whose size error is its own, too.
+    scale_assumed, flatness_assumed
+        Whether nobody has stated that, or how flat it is.
+    print_of
+        Name of the print whose error of size is its own: boards with the same name have it in common.
     pictures
         How many pictures it was seen in.
     rms_px
@@ -63,7 +63,8 @@ class KnownPlane:
     marks: NDArray[np.bool_] | None = None
     scale_sd: float = 0.0
     scale_assumed: bool = False
-    print_of_target: bool = True
+    flatness_assumed: bool = False
+    print_of: str = ""
     pictures: int = 1
     rms_px: float = float("nan")
 

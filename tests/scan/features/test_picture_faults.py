@@ -20,6 +20,7 @@ from core.scan.features.picture_faults import (
 )
 from core.scan.features.reference import read_reference
 from core.scan.first_cause import cause_first
+from core.scan.method import ReconstructOptions
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
@@ -109,10 +110,10 @@ def test_a_refusal_asks_for_faults_and_for_no_notes(monkeypatch):
 
     monkeypatch.setattr(judgement, "reconstruct_twice", refuse)
     told = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    rig = SimpleNamespace(camera=SimpleNamespace(camera=None), fan=SimpleNamespace(fan=None))
+    rig = SimpleNamespace(camera=SimpleNamespace(camera=None), fan=SimpleNamespace(fan=None), planes=())
     for notes, faults in (((), told), (told, ())):
         with pytest.raises(InputError) as refused:
-            judgement.solved_scan(SimpleNamespace(notes=notes, faults=faults), rig, None, None)
+            judgement.solved_scan(SimpleNamespace(notes=notes, faults=faults), rig, ReconstructOptions(), None)
         assert ("The frames are compressed" in str(refused.value)) == bool(faults)
 
 

@@ -150,7 +150,7 @@ def measure_plane_pose(
         else:
             why = _other_stripes(settings, seen)
         return PoseFeatures(name, view, (), why, moved_px=moved_px)
-    carried = _Carried(plate, view, _plate_level(plate, view), carrier, camera, off is not None)
+    carried = _Carried(plate, view, plate_level(plate, view), carrier, camera, off is not None)
     others = _in_others(centrelines, carried, outside, settings, beside)
     centrelines = carried.stripes(centrelines, light, beside)
     notes: tuple[Message, ...] = ()
@@ -231,7 +231,7 @@ class _Light:
             of_plate = _window(there, without.shape, margin=0.25)
             exposed = Exposed.of(picture[of_plate], without[of_plate], full_scale)
             without = exposed.like(without)
-            common = _plate_level(without, there)
+            common = plate_level(without, there)
             one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
             noise = replace(one, compression=beside.compression).of_difference(common)
             picture -= without
@@ -359,8 +359,8 @@ def _window(view: TargetView, shape: tuple[int, ...], margin: float) -> tuple[sl
     return slice(top, bottom), slice(left, right)
 
 
-def _plate_level(plate: Picture, view: TargetView) -> float:
-    """Grey level of the light plate at and around the target's points."""
+def plate_level(plate: Picture, view: TargetView) -> float:
+    """Compute the grey level of the light plate at and around the target's points."""
     return float(np.quantile(plate[_window(view, plate.shape, margin=0.25)][::4, ::4], 0.8))
 
 

@@ -63,6 +63,11 @@ class Plate:
             self._high = self._high + (seen[0] - whole[0])
         self._homography = homography_of(self._rays(view.uv), view.points[:, :2])
 
+    @property
+    def corners(self) -> tuple[Array, Array]:
+        """Least and largest x and y of the plate, (2,) each in mm in the frame of the view's points."""
+        return self._low - self._margin, self._high + self._margin
+
     def contains(self, uv: Array, room: float = 0.0) -> NDArray[np.bool_]:
         """Flag the points `uv` (N, 2) in px that lie on the plate, (N,); `room` widens it by a share of its margin."""
         if self._homography is None:

@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from core.calibrate.change import P_TOLD, Change, Evidence, changes
-from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
+from core.calibrate.deviations import UNEXPLAINED, Deviation
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
 from core.files.results.planes_file import planes_id
-from core.findings.proof import ScanFacts, notes_of
+from core.findings.proof import Doubt, ScanFacts, notes_of
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
+from core.pipeline.steps.scan.known_planes import told_of_boards
 from core.pipeline.steps.workspace import Calibration, Workspace, planes_of
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
@@ -24,7 +26,9 @@ from core.scan.common_errors import CommonErrors, solve_common
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Causes, cause_first
+from core.scan.known_planes.plane_deviations import followed_by_planes, own_deviations
 from core.scan.method import Method, ReconstructOptions
+from core.scan.plane_check import PlaneCheck, check_by_planes
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 
@@ -36,6 +40,16 @@ class Solved:
     features: ScanFeatures
     scan: ScanResult
     calibration: Calibration
+    """With the known planes that were used."""
+    check: PlaneCheck | None = None
+    """Of camera and fan by the known planes; None where there is no fan, or no plane."""
+    notes: tuple[Message, ...] = ()
+    """On the known planes."""
+
+    @property
+    def checked(self) -> bool:
+        """Whether known planes show that camera and fan were as calibrated in this very scan."""
+        return self.check is not None and self.check.passed
 
     def evidence(self, deviations: Sequence[Deviation]) -> Evidence:
         """Compute what the scan's misclosures say about K deviations of camera and fan, as normal equations."""
@@ -86,18 +100,50 @@ class Judgement:
 
 
 def solved_scan(
-    features: ScanFeatures, calibration: Calibration, options: ReconstructOptions, progress: Progress
+    features: ScanFeatures,
+    calibration: Calibration,
+    options: ReconstructOptions,
+    progress: Progress,
+    of_boards: Sequence[Message] = (),
 ) -> Solved:
     """Locate a scan's sweeps and triangulate its points, twice where its surface bends.
+
+    A known plane that the fan, where there is one, disagrees with is left out; all are if it disagrees with more.
+    `of_boards` are notes on the boards that were looked for.
 
     Raises
     ------
     InputError
-        If it cannot be solved; what is wrong with its pictures is told first.
+        If it cannot be solved; what is wrong with its pictures is told first, what is wrong with its boards last.
     """
-    with cause_first(partial(at_fault, features.faults)):
-        found = reconstruct_twice(features, calibration.camera.camera, calibration.fan.fan, options, progress)
-    return Solved(*found, calibration)
+    notes = list(of_boards)
+    camera, planes = calibration.camera.camera, calibration.planes
+    planes = planes if options.method == Method.NETWORK else ()
+    while True:
+        with told_of_boards(notes), cause_first(partial(at_fault, features.faults)):
+            found = reconstruct_twice(features, camera, calibration.fan.fan, options, progress, planes)
+        met = {fit.name for fit in found[1].planes}
+        notes.extend(note_of("scan.board_not_met", board=one.name) for one in planes if one.name not in met)
+        planes = tuple(one for one in planes if one.name in met)
+        used = replace(calibration, planes=planes)
+        if not planes or not calibration.fan.fan.lines:
+            return Solved(*found, used, notes=tuple(notes))
+        check = _check(found[1], used)
+        notes.append(check.note)
+        if check.passed:
+            return Solved(*found, used, check, tuple(notes))
+        off = check.alone_off
+        planes = () if off is None else tuple(one for one in planes if one.name != off.name)
+        if not planes:
+            with told_of_boards(notes), cause_first(partial(at_fault, features.faults)):
+                found = reconstruct_twice(features, camera, calibration.fan.fan, options, progress)
+            return Solved(*found, replace(calibration, planes=()), check, tuple(notes))
+
+
+def _check(scan: ScanResult, calibration: Calibration) -> PlaneCheck:
+    """Compare the fan with the known planes, all that their calibrations leave uncertain reckoned with."""
+    camera, control = calibration.camera.camera, calibration.control
+    return check_by_planes(scan, camera, control, calibration.deviations)
 
 
 def judged_scan(
@@ -130,9 +176,12 @@ def judged_scan(
     """
     camera, control = solved.calibration.camera.camera, solved.calibration.control
     change = change_by(solved.evidence if method == Method.NETWORK else _nothing)
-    deviations = (*change.deviations, *section.deviations)
+    own = own_deviations(camera, control, fan_has_scale=solved.calibration.fan.scale_sd > 0)
+    deviations = (*change.deviations, *section.deviations, *own)
     common = solve_common(solved.scan, camera, control, deviations, method, progress)
     causes = _causes(solved, change) if method == Method.NETWORK else ()
+    if solved.check is not None and not solved.check.passed:
+        of_the_day = replace(of_the_day, of_the_day=(*of_the_day.of_the_day, Doubt.of(solved.check.note)))
     facts = facts_of(of_the_day, change, section, solved.features.too_fine_for_mosaic, solved.scan)
     names = [frame.name for frame in solved.features.frames]
     likely = note_on_causes(causes, facts, solved.scan.movements, names)
@@ -143,15 +192,14 @@ def _causes(solved: Solved, change: Change) -> Causes:
     """What explains most of what crossings are off too much; nothing is compared where nothing is too large."""
     if not solved.scan.needs_cause and change.p >= P_TOLD:
         return ()
-    camera, fan = solved.calibration.camera, solved.calibration.fan
-    of_calibration = calibration_deviations(camera, fan)
+    camera, fan, control = solved.calibration.camera, solved.calibration.fan, solved.calibration.control
     return compare_causes(
         solved.features,
         solved.scan,
         camera.camera,
-        replace(fan.fan, bends=fan.bends),
-        [one for one in of_calibration if one.source != UNEXPLAINED],
-        changes(camera.camera, fan.fan),
+        control.with_fan(replace(fan.fan, bends=fan.bends)),
+        [one for one in solved.calibration.deviations if one.source != UNEXPLAINED],
+        followed_by_planes(changes(camera.camera, fan.fan), camera.camera, control, fan.scale_sd),
     )
 
 

@@ -35,6 +35,7 @@ def notes_on_scan(
     return gravest_first(
         (
             *judgement.notes,
+            *solved.notes,
             *left_out_notes(scan.frames),
             *kept.notes,
             *notes_on_focus(kept, solved.features.fan),

@@ -1,0 +1,73 @@
+"""The known planes of a scan: its boards found in their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.calibrate.board_shape import BoardTolerance
+from core.errors import InputError
+from core.files.recording.picture_reader import PictureReader
+from core.files.recording.recording_set import PlanePictures
+from core.messages import Message
+from core.model import Camera
+from core.pipeline.steps.workspace import Calibration, check_size
+from core.progress import Progress, steps
+from core.scan.known_planes.seen_plane import BoardOf, SoughtPlane, seek_plane
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BoardsSeen:
+    """Calibration with the known planes that were found, and notes on those that were not."""
+
+    calibration: Calibration
+    notes: tuple[Message, ...] = ()
+
+
+def see_boards(pictures: PictureReader, calibration: Calibration, progress: Progress) -> BoardsSeen:
+    """Find the boards of a recording set in the channel of the camera's target, and record the pictures' hashes.
+
+    Raises
+    ------
+    InputError
+        If a picture cannot be read, or has another size than the camera's.
+    """
+    boards = pictures.recording_set.known_planes
+    camera = calibration.camera.camera
+    sought = [_sought(pictures, board, camera) for board in steps(boards, progress, "known planes", len(boards))]
+    planes = tuple(one.plane for one in sought if one.plane is not None)
+    if not calibration.fan.fan.lines:
+        calibration = replace(
+            calibration, fan=replace(calibration.fan, scale_assumed=any(plane.scale_assumed for plane in planes))
+        )
+    return BoardsSeen(replace(calibration, planes=planes), tuple(note for one in sought for note in one.notes))
+
+
+@contextmanager
+def told_of_boards(notes: Sequence[Message]) -> Iterator[None]:
+    """Put notes on the boards of a scan behind the text of a complaint raised in this block."""
+    try:
+        yield
+    except InputError as error:
+        if not notes:
+            raise
+        what = Message("scan.refused_and_boards", "{complaint} ({notes:;})", complaint=error.what, notes=tuple(notes))
+        raise type(error)(what, where=error.where, todo=error.todo) from error
+
+
+def _sought(pictures: PictureReader, board: PlanePictures, camera: Camera) -> SoughtPlane:
+    """One board in its own pictures, else in the reference."""
+    reference = pictures.recording_set.reference
+    paths: list[Path] = list(board.pictures) or ([] if reference is None else [reference])
+    pictures.take_hashes(paths)
+    read = []
+    for path in paths:
+        picture = pictures.read_board(path)
+        check_size(path, picture.shape, camera)
+        read.append((pictures.recording_set.name_of(path), picture))
+    stated = board.stated
+    tolerance: BoardTolerance = stated.board
+    of = BoardOf(board.name, board.target, tolerance, stated.margin_mm, board.print_of, stated.region_px)
+    return seek_plane(of, read, camera)

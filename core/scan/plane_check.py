@@ -1,0 +1,186 @@
+"""Check of camera and fan by known planes within a scan: do the sweeps, tied to the fan, see the boards where they are?
+
+The network's numbers z of the planes (`core.scan.known_planes.known_plane`) are 0 but for their own uncertainty where
+all is as calibrated. With H⁻¹ the inverse of its normal matrix and D what one standard uncertainty of each calibration
+does to ẑ, the covariance of ẑ is ::
+
+    V = (1 − C)(1 − C)ᵀ + E Eᵀ + N + D Dᵀ
+
+C the block of H⁻¹ of the planes, E that of the planes with the fan's cells, N what the crossings' noise does. So
+ẑᵀ V⁻¹ ẑ is χ² distributed with three degrees of freedom a plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve
+from scipy.special import chdtrc
+
+from core.calibrate.change import P_TOLD
+from core.calibrate.deviations import Deviation
+from core.findings.table import note_of
+from core.messages import Message, plain
+from core.model import Camera
+from core.model.arrays import Array
+from core.scan.known_planes.known_plane import FREEDOMS, Control
+from core.scan.results import ScanResult
+from core.scan.scan_evidence import change_of_misclosures, settled_equations
+
+DISAGREES = 0.001
+"""Probability by chance below which fan and planes surely disagree."""
+
+_RIG = Message("scan.planes_say_rig", "the fixed laser or the camera has turned or shifted since the calibration")
+_EITHER = Message(
+    "scan.planes_say_either",
+    "the fixed laser or the camera has turned since the calibration, or the board moved, is bent or of another size: a "
+    "second board would tell",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PlaneOff:
+    """Disagreement of the fan with one known plane.
+
+    Parameters
+    ----------
+    name
+        The board's.
+    mm
+        How much farther from the camera, along its normal, the fan has the middle of where its light met the board.
+    turn
+        Angle in rad between the board and where the fan has it.
+    times
+        How many times larger both are, together, than the standard uncertainties let one expect.
+    others_p
+        Probability that chance alone would set the fan as far off the other planes; 1 where there is none.
+    """
+
+    name: str
+    mm: float
+    turn: float
+    times: float
+    others_p: float = 1.0
+
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Sizes of the disagreement, as notes have them."""
+        return {"mm": abs(self.mm), "degrees": float(np.degrees(self.turn)), "times": self.times}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlaneCheck:
+    """Comparison of the fan with the known planes of a scan.
+
+    Parameters
+    ----------
+    planes
+        How far it is off each of them.
+    squares, freedom
+        χ² of all of it, and the numbers that are compared.
+    """
+
+    planes: tuple[PlaneOff, ...]
+    squares: float
+    freedom: int
+
+    @property
+    def p(self) -> float:
+        """Probability that chance alone would set fan and planes as far apart."""
+        return float(chdtrc(self.freedom, self.squares))
+
+    @property
+    def passed(self) -> bool:
+        """Whether fan and planes agree."""
+        return self.p >= DISAGREES
+
+    @property
+    def alone_off(self) -> PlaneOff | None:
+        """The only plane that the fan disagrees with, so that its board has moved or is bent; None if not only one."""
+        alone = [one for one in self.planes if one.others_p >= P_TOLD]
+        return min(alone, key=lambda one: -one.times) if alone and len(self.planes) > 1 else None
+
+    @property
+    def note(self) -> Message:
+        """Note on whether fan and planes agree, and if not, on what is the likeliest reason."""
+        worst = max(self.planes, key=lambda one: one.times)
+        names = tuple(plain(one.name) for one in self.planes)
+        if self.passed:
+            return note_of("scan.checked_by_planes", boards=names, mm=max(abs(one.mm) for one in self.planes), p=self.p)
+        alone = self.alone_off
+        if alone is not None:
+            return note_of("scan.board_off", board=alone.name, **alone.sizes)
+        cause = _RIG if len(self.planes) > 1 else _EITHER
+        return note_of("scan.planes_disagree", boards=names, cause=cause, **worst.sizes)
+
+
+def check_by_planes(scan: ScanResult, camera: Camera, control: Control, deviations: Sequence[Deviation]) -> PlaneCheck:
+    """Compare the fan with the known planes of a scan that was solved with both.
+
+    `deviations` are what the calibrations leave uncertain, one standard uncertainty each.
+    """
+    equations, solution = settled_equations(scan, camera, control)
+    first = equations.before_planes
+    z = solution.cells[first - equations.unknowns :]
+    of_planes = solution.inverse[:, first:]
+    weight = solution.weights / solution.sigma**2
+    noise = equations.noise(solution).T @ (weight[:, None] * (solution.design @ of_planes))
+    own = np.eye(len(z)) - of_planes[first:]
+    cells = of_planes[equations.unknowns : first]
+    covariance = own @ own.T + cells.T @ cells + max(1.0, scan.scale) ** 2 * (noise.T @ noise)
+    moves = np.array(
+        [
+            change_of_misclosures(
+                equations, solution, control.displaced(one), None if one.camera is camera else one.camera
+            )
+            for one in deviations
+        ]
+    ).reshape(-1, len(weight))
+    felt = cho_solve(solution.factor, solution.design.T @ (weight[:, None] * moves.T), check_finite=False)[first:]
+    expected = covariance + felt @ felt.T
+    squares = _squares(z, expected, slice(None))
+    free = _as_the_fan_has_them(z, of_planes[first:])
+    off = tuple(
+        replace(
+            _off(scan, camera, control, number, free),
+            times=float(np.sqrt(_squares(z, expected, _block(number)) / FREEDOMS)),
+            others_p=_others_p(z, expected, _block(number)),
+        )
+        for number in range(len(control.planes))
+    )
+    return PlaneCheck(off, squares, len(z))
+
+
+def _squares(z: Array, covariance: Array, part: slice | NDArray[np.intp]) -> float:
+    """χ² of a part of z."""
+    return float(z[part] @ np.linalg.solve(covariance[part][:, part], z[part]))
+
+
+def _others_p(z: Array, covariance: Array, mine: slice) -> float:
+    others = np.delete(np.arange(len(z)), mine)
+    return float(chdtrc(len(others), _squares(z, covariance, others))) if len(others) else 1.0
+
+
+def _block(number: int) -> slice:
+    return slice(FREEDOMS * number, FREEDOMS * number + FREEDOMS)
+
+
+def _as_the_fan_has_them(z: Array, block: Array) -> Array:
+    """Z without its prior: where the sweeps, tied to the fan alone, have the planes; what they do not know stays 0."""
+    information = np.linalg.inv(block) - np.eye(len(z))
+    return np.asarray(np.linalg.pinv(information, rcond=1e-6, hermitian=True) @ np.linalg.solve(block, z))
+
+
+def _off(scan: ScanResult, camera: Camera, control: Control, number: int, z: Array) -> PlaneOff:
+    """How far the fan is off a plane, by z without its prior."""
+    plane, mine = control.planes[number], _block(number)
+    rays = camera.rays(scan.crossings.uv[scan.crossing_lines == control.fan.lines + number])
+    there = plane.pi + plane.factor @ z[mine]
+    ray = rays.mean(axis=0) if len(rays) else np.array([0.0, 0.0, 1.0])
+    normal, other = (pi / np.linalg.norm(pi) for pi in (plane.pi, there))
+    mm = float((normal @ ray) * (1 / (there @ ray) - 1 / (plane.pi @ ray)))
+    turn = float(np.arccos(np.clip(normal @ other, -1.0, 1.0)))
+    return PlaneOff(plane.name, mm, turn, 0.0)
