@@ -43,6 +43,7 @@ _KINDS = "AVI, MP4, MOV, MKV, GIF, PNG, WebP ({})".format(
     " ".join(f"*{ending}" for ending in sorted((*FILMS, *PERHAPS_MOVING)))
 )
 """What a film may be."""
+_MARGINS = (9, 9, 9, 9)
 _PREVIEW_PX = 900
 """Pictures are shown so wide at most."""
 
@@ -135,7 +136,7 @@ class ImportDialog(QDialog):
         preview.setSizes([420, 640])
         column = in_column(Folding(calibration, measurement, spacing=14), whole, (preview, 1), margins=NO_MARGINS)
         self._asked = holding(column)
-        in_column((self._asked, 1), self.words, self.bar, self.buttons, on=self)
+        in_column((self._asked, 1), self.words, self.bar, self.buttons, on=self, margins=_MARGINS)
 
     def _with_browse(self, field: QLineEdit, label: str, *, film: bool = False) -> QHBoxLayout:
         field.setAccessibleName(label)
