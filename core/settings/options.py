@@ -153,6 +153,7 @@ class Options:
                 "--method",
                 help="network: all sweeps adjusted together. three-crossings: each frame from its own crossings with "
                 "the fan, the paper's method, for comparison.",
+                value="METHOD",
             ),
             refused=lambda method: Message(
                 "options.no_such_method", "{method!r} is not {method2}", method=method, method2=" or ".join(Method)
@@ -261,8 +262,10 @@ class Options:
             steps=("planes", "check", "scan", "profile"),
             flag=Flag(
                 "--channel",
-                help="Look at the lasers in this channel of colour pictures, or difference of two; else as rig.toml "
-                "says, or in the one that shows their light best.",
+                help="Look at the lasers in this channel of colour pictures, red, green or blue, or difference of "
+                "two, red-green, green-red or blue-red; else as rig.toml says, or in the one that shows their light "
+                "best.",
+                value="CHANNEL",
             ),
             in_file=False,
         ),
