@@ -52,11 +52,26 @@ class Region:
         if len(near) < 3:
             return cls(near[:0], 0.0)
         laid = _Laid.out(points[near], normal, margin_mm)
-        covered = _without_small_parts(_closed(laid.occupied, laid.cell), smallest_part)
-        depth_in = cv2.distanceTransform(covered, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
-        inner = (depth_in - 0.5) * laid.cell >= margin_mm
+        inner = laid.inner(margin_mm, smallest_part)
         return cls(near[inner[laid.row, laid.column]], float(inner.sum()) * laid.cell**2)
+
+
+def most_lies_elsewhere(
+    cloud: Cloud, near: NDArray[np.int64], normal: Array, margin_mm: float, elsewhere: Array
+) -> bool:
+    """Whether more of the sweeps' points within the region that `cloud.points[near]` cover lie `elsewhere` than on it.
+
+    So it is with a plane that slants through treads narrower than the gaps between stripes that count as covered: on it
+    are the fan's lines, one on each tread, and of the sweeps the strips beside them. A face has nothing else before it
+    or behind. `elsewhere` (M, 3) are points of sweeps off the plane with this unit `normal` (3,).
+    """
+    if len(near) < 3 or not len(elsewhere):
+        return False
+    laid = _Laid.out(cloud.points[near], normal, margin_mm)
+    inner = laid.inner(margin_mm, SMALL_PART)
+    on = inner[laid.row, laid.column] & (cloud.sweep[near] > FAN)
+    row, column = laid.places(elsewhere)
+    return bool(np.count_nonzero(inner[row, column]) > np.count_nonzero(on))
 
 
 def region_on(
@@ -69,9 +84,8 @@ def region_on(
     for the narrowest gap that counts as covered. A plane that slants through lines on levels that sweeps reach has all
     of these lines, and of the sweeps narrow strips beside them: there a wide gap is an edge, as on any swept face.
     """
-    of_fan = cloud.sweep[near] <= FAN
-    lines = np.unique(cloud.sweep[near][of_fan])
-    if len(lines) < 2 or np.count_nonzero(~of_fan) > STRAY_SHARE * np.count_nonzero(of_fan):
+    lines = np.unique(cloud.sweep[near][cloud.sweep[near] <= FAN])
+    if len(lines) < 2 or not _no_sweep_reaches(cloud, near):
         return Region.of(cloud.points, near, normal, margin_mm, smallest_part)
     pieces = [piece for line in lines for piece in _pieces(cloud.points, near[cloud.sweep[near] == line])]
     longest = max(float(along[-1]) for _, along in pieces)
@@ -82,6 +96,12 @@ def region_on(
             kept.append(indices[(along >= margin_mm) & (along <= end)])
             length += end - margin_mm
     return Region(np.sort(np.concatenate(kept)), length * 2 * SMALLEST_GAP_MM)
+
+
+def _no_sweep_reaches(cloud: Cloud, near: NDArray[np.int64]) -> bool:
+    """Whether of sweeps there are but stray points among those of the fan."""
+    of_fan = cloud.sweep[near] <= FAN
+    return bool(np.count_nonzero(~of_fan) <= STRAY_SHARE * np.count_nonzero(of_fan))
 
 
 def _pieces(points: Array, line: NDArray[np.int64]) -> Iterator[tuple[NDArray[np.int64], Array]]:
@@ -139,13 +159,24 @@ class _Laid:
         occupied[row, column] = 1
         return cls(axes, low, cell, pad, row, column, occupied)
 
-    def with_points(self, points: Array) -> NDArray[np.uint8]:
-        """Which cells hold one of other points (m, 3)."""
+    def inner(self, margin_mm: float, smallest_part: float) -> NDArray[np.bool_]:
+        """Which cells are covered, and farther from the edge of what is than the margin."""
+        covered = _without_small_parts(_closed(self.occupied, self.cell), smallest_part)
+        depth_in = cv2.distanceTransform(covered, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
+        return np.asarray((depth_in - 0.5) * self.cell >= margin_mm, dtype=np.bool_)
+
+    def places(self, points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Rows and columns of those of other points (m, 3) that lie in one of the cells."""
         column, row = (np.floor((points @ self.axes.T - self.low) / self.cell).astype(np.int64) + self.pad).T
         rows, columns = self.occupied.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        return row[inside], column[inside]
+
+    def with_points(self, points: Array) -> NDArray[np.uint8]:
+        """Which cells hold one of other points (m, 3)."""
         cells = np.zeros_like(self.occupied)
-        cells[row[inside], column[inside]] = 1
+        cells[self.places(points)] = 1
         return cells
 
 

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.inspect.face_region import Region, region_on
+from core.inspect.face_region import Region, most_lies_elsewhere, region_on
 from core.messages import Message
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.surface.cloud import Cloud
+from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.normals import pixel_angle, with_normals
 
 POINT_CLOUD = Message("surface.where_cloud", "point cloud")
@@ -34,6 +34,8 @@ HYPOTHESES = 300
 """Triples of neighbouring points tried: a face with a tenth of the points is hit by 30 of them."""
 FINALISTS = 5
 """The best hypotheses, each refined before the winner is chosen."""
+MOST_TRIED = 40
+"""So many of the best, as long as among those before are planes that slant through narrow treads."""
 MOST_PLANES = 8
 """Faces looked for: as many as features can name by number (`core.inspect.plan.kinds.MOST_FACES`)."""
 FEWEST_POINTS = 12
@@ -82,7 +84,7 @@ def find_planes(
     for round_ in range(most):
         progress("faces", round_, most)
         part = cloud.select(left)
-        plane = largest_plane(part, tolerance, margin_mm, seed + round_)
+        plane = largest_plane(part, tolerance, margin_mm, seed + round_, cloud)
         if plane is None:
             break
         near = _on_plane(part, plane.normal, plane.distance, 2 * tolerance)
@@ -114,11 +116,14 @@ def search_tolerance(cloud: Cloud) -> float:
     return max(0.25, 5 * float(np.median(cloud.sigma))) if len(cloud) else 0.25
 
 
-def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -> FoundPlane | None:
+def largest_plane(
+    cloud: Cloud, tolerance: float, margin_mm: float, seed: int, whole: Cloud | None = None
+) -> FoundPlane | None:
     """Find the plane of the largest area in a cloud, its region less `margin_mm`; None if there is no plane.
 
-    Parameters as for `find_planes`; `tolerance` in mm.
+    Parameters as for `find_planes`; `tolerance` in mm. The cloud may be what earlier planes have left of a `whole` one.
     """
+    whole = cloud if whole is None else whole
     rng = np.random.default_rng(seed)
     sample, area = _even_sample(cloud, rng)
     if len(sample) < FEWEST_POINTS:
@@ -126,21 +131,36 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
     oriented = _OrientedPoints.of(cloud.points[sample], cloud.normals[sample])
     candidates = _hypotheses(oriented.points, oriented.normals, rng)
     votes = np.array([_vote(oriented, area, n, d, tolerance) for n, d in candidates])
-    finalists = []
-    for index in np.argsort(-votes, kind="stable")[:FINALISTS]:
-        normal, distance = candidates[index]
-        for _ in range(4):
-            near = oriented.near(normal, distance, tolerance)
-            if near.sum() < 6:
-                break
-            normal, distance = _mean_plane(oriented.points[near], area[near])
-        finalists.append((_vote(oriented, area, normal, distance, tolerance), normal, distance))
-    for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
-        on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
-        region = region_on(cloud, on, normal, margin_mm)
-        if vote > 0 and len(region.indices):  # nothing may be left of a plane that slants through stairs
-            return FoundPlane(normal, distance, region)
+    order = np.argsort(-votes, kind="stable")
+    for first in range(0, MOST_TRIED, FINALISTS):
+        finalists = [
+            _refined(oriented, area, *candidates[index], tolerance) for index in order[first : first + FINALISTS]
+        ]
+        slanting = False
+        for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
+            on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
+            region = region_on(cloud, on, normal, margin_mm)
+            if vote <= 0 or not len(region.indices):  # nothing may be left of a plane that slants through stairs
+                continue
+            off = (whole.sweep > FAN) & (np.abs(whole.points @ normal - distance) > tolerance)
+            if not most_lies_elsewhere(cloud, on, normal, margin_mm, whole.points[off]):
+                return FoundPlane(normal, distance, region)
+            slanting = True
+        if not slanting:
+            break
     return None
+
+
+def _refined(
+    oriented: _OrientedPoints, area: Array, normal: Array, distance: float, tolerance: float
+) -> tuple[float, Array, float]:
+    """Vote, normal and distance of a hypothesis fitted to the points near it, again and again."""
+    for _ in range(4):
+        near = oriented.near(normal, distance, tolerance)
+        if near.sum() < 6:
+            break
+        normal, distance = _mean_plane(oriented.points[near], area[near])
+    return _vote(oriented, area, normal, distance, tolerance), normal, distance
 
 
 @dataclass(frozen=True, eq=False, slots=True)
