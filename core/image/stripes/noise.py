@@ -23,6 +23,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 
 _MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32) / 6
@@ -188,12 +189,12 @@ def _tile_statistics(
 
     mean = sum(map(of_kept, pictures[1:]), of_kept(pictures[0])) / np.float32(len(pictures))
     level = np.asarray(mean, dtype=np.float64).mean(axis=1)
-    deviation = np.asarray(of_kept(residual), dtype=np.float64)
+    deviation = of_kept(residual)
     if not len(deviation):
         return level, np.zeros(0), np.zeros(0)
     quarter = deviation.shape[1] // 4
-    quiet = np.partition(np.abs(deviation), quarter, axis=1)[:, quarter] / _QUARTER
-    return level, (deviation**2).mean(axis=1), quiet**2
+    quiet = np.partition(np.abs(deviation), quarter, axis=1)[:, quarter].astype(np.float64) / _QUARTER
+    return level, (deviation.astype(np.float64) ** 2).mean(axis=1), quiet**2
 
 
 def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
@@ -220,7 +221,7 @@ def _flat_places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None,
     if level.size < _LEAST_PER_GROUP * _GROUPS:
         return None
     groups = np.array_split(np.argsort(level), _GROUPS)
-    levels = np.array([np.median(level[g]) for g in groups])
+    levels = np.array([(level[g[(len(g) - 1) // 2]] + level[g[len(g) // 2]]) / 2 for g in groups])  # in order: medians
     variances = np.array([_lowest_peak(np.log(variance[g])) for g in groups]) - ROUNDING_VARIANCE
     return _lower_line(np.maximum(levels, 0.0), np.maximum(variances, ROUNDING_VARIANCE))
 
@@ -234,32 +235,63 @@ def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, stri
     rows, columns = (size - 2 for size in picture.shape)
     if min(rows, columns) < 1:
         return np.zeros(0), np.zeros(0)
-    # one row for each of the nine pixels: sums of rows take a fifth of the time of sums over the pixels of each place
-    parts = [picture[v : v + rows : stride, u : u + columns : stride].ravel() for v in range(3) for u in range(3)]
-    pixels = np.array(parts)
-    keep = (pixels.min(axis=0) > picture.min()) & (pixels.max(axis=0) < picture.max())
+    keep = _unclipped(picture, stride, float(picture.min()), float(picture.max()))
     if ignore is not None:
-        keep &= ~ignore[1 : 1 + rows : stride, 1 : 1 + columns : stride].ravel()
-    if np.count_nonzero(keep) < keep.size / 2:
+        keep &= ~ignore[1 : 1 + rows : stride, 1 : 1 + columns : stride]
+    count = np.count_nonzero(keep)
+    if count < keep.size / 2:
         return np.zeros(0), np.zeros(0)
     # whole grey levels would give peaks of their own; what this adds is taken off again
-    places = np.random.default_rng(0).uniform(-0.5, 0.5, (9, np.count_nonzero(keep)))
-    for place, row in zip(places, pixels, strict=True):
-        place += row[keep]
-    level = _sum_of_nine(places) / 9
-    across = (places[2] - places[0]) + (places[5] - places[3]) + (places[8] - places[6])
-    down = (places[6] - places[0]) + (places[7] - places[1]) + (places[8] - places[2])
-    places -= level
-    places *= places
-    squares = _sum_of_nine(places) - (across**2 + down**2) / 6
-    return level, squares / 6
+    added = np.random.default_rng(0).random((9, count))
+    return _flatness(picture, stride, keep, added)
 
 
-def _sum_of_nine(rows: Array) -> Array:
-    """Sum (N,) of nine rows (9, N), in pairs: so rounding grows least."""
-    a, b, c, d, e, f, g, h, last = rows
-    total: Array = ((a + b) + (c + d)) + ((e + f) + (g + h)) + last
-    return total
+@compiled()
+def _unclipped(picture: NDArray[np.float32], stride: int, darkest: float, brightest: float) -> NDArray[np.bool_]:
+    """Flag the places of 3 × 3 px, each `stride` px from the next, all of which lie between two grey levels."""
+    rows, columns = (picture.shape[0] - 3) // stride + 1, (picture.shape[1] - 3) // stride + 1
+    kept = np.empty((rows, columns), np.bool_)
+    for i in range(rows):
+        for j in range(columns):
+            inside = True
+            for k in range(9):
+                grey = picture[i * stride + k // 3, j * stride + k % 3]
+                inside &= darkest < grey < brightest
+            kept[i, j] = inside
+    return kept
+
+
+@compiled()
+def _flatness(picture: NDArray[np.float32], stride: int, keep: NDArray[np.bool_], added: Array) -> tuple[Array, Array]:
+    """Mean level (N,) and variance (N,) that a plane leaves of the places of 3 × 3 px to `keep` (R, C).
+
+    To their pixels `added` (9, N), 0 to 1, less a half, is added first.
+    """
+    level, variance = np.empty(added.shape[1]), np.empty(added.shape[1])
+    place, n = np.empty(9), 0
+    for i in range(keep.shape[0]):
+        for j in range(keep.shape[1]):
+            if not keep[i, j]:
+                continue
+            for k in range(9):
+                place[k] = (added[k, n] - 0.5) + picture[i * stride + k // 3, j * stride + k % 3]
+            mean = _sum_of_nine(place) / 9
+            across = (place[2] - place[0]) + (place[5] - place[3]) + (place[8] - place[6])
+            down = (place[6] - place[0]) + (place[7] - place[1]) + (place[8] - place[2])
+            for k in range(9):
+                place[k] = (place[k] - mean) * (place[k] - mean)
+            level[n] = mean
+            variance[n] = (_sum_of_nine(place) - (across * across + down * down) / 6) / 6
+            n += 1
+    return level, variance
+
+
+@inlined()
+def _sum_of_nine(values: Array) -> float:
+    """Sum of nine values, in pairs: so rounding grows least."""
+    left = (values[0] + values[1]) + (values[2] + values[3])
+    right = (values[4] + values[5]) + (values[6] + values[7])
+    return float((left + right) + values[8])
 
 
 def _lowest_peak(logarithms: Array) -> float:

@@ -194,7 +194,8 @@ def _least_median(xy: Array) -> tuple[Array, Array]:
     normal = np.column_stack([direction[:, 1], -direction[:, 0]]) / np.maximum(length, 1e-12)
     sample = xy[:: max(1, len(xy) // 400)]
     distance = np.abs(sample @ normal.T - np.einsum("ij,ij->i", first, normal))
-    best = int(np.argmin(np.where(length[:, 0] > 0, np.median(distance, axis=0), np.inf)))
+    medians = np.median(np.ascontiguousarray(distance.T), axis=1)  # columns are slow to put in order
+    best = int(np.argmin(np.where(length[:, 0] > 0, medians, np.inf)))
     return (first[best] + second[best]) / 2, normal[best]
 
 

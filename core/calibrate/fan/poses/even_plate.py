@@ -36,14 +36,20 @@ class EvenPlate:
         """
         smooth = np.asarray(cv2.GaussianBlur(plate.astype(np.float32), (0, 0), _BLUR_PX), dtype=np.float32)
         size = 2 * round(_cell_px(view)) + 1
-        around = np.full(smooth.shape, level, dtype=np.float32)
+        around: NDArray[Any] = np.full(smooth.shape, level, dtype=np.float32)
         for share in (DARK, EVEN):  # the mean is first known roughly
-            light = np.asarray(smooth > share * around, dtype=np.float32)
-            number, total = (np.asarray(cv2.blur(values, (size, size))) for values in (light, smooth * light))
-            around = np.where(number > _LEAST_LIGHT, total / np.maximum(number, _LEAST_LIGHT), np.float32(level))
-        dark = np.asarray(smooth < EVEN * around, dtype=np.uint8)
+            around *= np.float32(share)
+            light = np.asarray(smooth > around, dtype=np.float32)
+            number = np.asarray(cv2.blur(light, (size, size)))
+            light *= smooth
+            around = np.asarray(cv2.blur(light, (size, size)))
+            unknown = number <= _LEAST_LIGHT
+            around /= np.maximum(number, _LEAST_LIGHT, out=number)
+            around[unknown] = level
+        dark = (smooth < EVEN * around).view(np.uint8)
         beside, about = (np.asarray(cv2.dilate(dark, np.ones((size, size), np.uint8))) > 0 for size in (3, 7))
-        return cls(np.where(about, around, smooth), beside)
+        np.copyto(smooth, around, where=about)
+        return cls(smooth, beside)
 
 
 def _cell_px(view: TargetView) -> float:

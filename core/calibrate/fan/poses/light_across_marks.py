@@ -14,13 +14,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.compiled import compiled, inlined
 from core.image.mosaic import Sites
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import StripeSettings
@@ -132,15 +132,41 @@ def course_of(line: StripeLine, camera: Camera, sites: Sites) -> Array:
 
 def _along(points: Array, shape: tuple[int, ...], band: float) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
     """Pixels (K, 2) u, v within `band` px of courses, the nearest point of each, and how far along its normal it is."""
-    near = np.zeros(shape, dtype=np.uint8)
-    u, v = np.rint(points[:, :2]).astype(np.intp).T
-    near[v, u] = 1
-    size = 2 * math.ceil(band) + 1
-    pixels = np.argwhere(cv2.dilate(near, np.ones((size, size), np.uint8)))[:, ::-1]
-    nearest = np.asarray(cKDTree(points[:, :2]).query(pixels)[1], dtype=np.intp)
+    nearest_of = _nearest(points, shape[0], shape[1], math.ceil(band))
+    v, u = np.nonzero(nearest_of >= 0)
+    nearest, pixels = nearest_of[v, u].astype(np.intp), np.column_stack([u, v])
     n = np.einsum("ij,ij->i", pixels - points[nearest, :2], points[nearest, 2:4])
     close = np.abs(n) <= band
     return pixels[close], nearest[close], n[close]
+
+
+@compiled()
+def _nearest(points: Array, height: int, width: int, reach: int) -> NDArray[np.int32]:
+    """The nearest of `points` (N, ≥ 2) u, v to each pixel (H, W) at most `reach` px from one along u and v; else −1."""
+    nearest = np.empty((height, width), np.int32)
+    for v in range(height):
+        for u in range(width):
+            nearest[v, u] = -1
+    # the nearest point of a pixel may be one that it is farther from along one axis
+    farthest = math.ceil(math.sqrt(2.0) * (reach + 0.5)) + 1
+    for distance in (reach, farthest):
+        for k in range(len(points)):
+            left, top = round(points[k, 0]), round(points[k, 1])
+            for v in range(max(top - distance, 0), min(top + distance + 1, height)):
+                for u in range(max(left - distance, 0), min(left + distance + 1, width)):
+                    known = nearest[v, u]
+                    if known < 0:
+                        if distance == reach:
+                            nearest[v, u] = k
+                    elif _square(points, k, u, v) < _square(points, known, u, v):
+                        nearest[v, u] = k
+    return nearest
+
+
+@inlined()
+def _square(points: Array, k: int, u: int, v: int) -> float:
+    """Square of the distance in px of point `k` from a pixel."""
+    return float((points[k, 0] - u) ** 2 + (points[k, 1] - v) ** 2)
 
 
 def _mirrored(
