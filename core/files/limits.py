@@ -21,6 +21,10 @@ FILM_BYTES = 100_000_000_000
 """Of a film: it is read frame by frame."""
 FILM_FRAMES = 20_000
 """Of one film: eleven minutes of 30 frames a second."""
+FILM_PIXELS = 50_000_000
+"""Of one of its frames: those of 8K have 33 million."""
+FILM_SIDE_PX = 20_000
+"""Of a side of one."""
 TEXT_BYTES = 30_000_000
 """Of JSON and CSV: a camera.json of 100 views of 2,000 corners has 4 MB."""
 STL_BYTES = 300_000_000

@@ -22,6 +22,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.arrays_file import write_arrays
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
+from core.files.film import is_film, read_film
 from core.files.pictures import compression_of, read_picture
 from core.files.plan.plan_file import read_plan, write_plan
 from core.files.project.audit import read_trail
@@ -61,6 +62,7 @@ from core.simulate.scenario import Scenario
 from core.simulate.truth import load_truth, truth_folder
 from tests.code import ROOT
 from tests.files.plan.test_plan_file import EVERYTHING
+from tests.films import sweep, write_film
 from tests.report.report_samples import camera_calibration
 
 
@@ -87,6 +89,11 @@ def _picture(path: Path) -> None:
     read_picture(path)
 
 
+def _film(path: Path) -> None:
+    if is_film(path):
+        read_film(path)
+
+
 def _packed(path: Path) -> None:
     folder = path.with_name(f"unpacked-{secrets.token_hex(4)}")
     try:
@@ -110,6 +117,8 @@ def _geometry(path: Path) -> Any:
 
 
 PLAN: dict[str, Any] = {"feature": []}
+FILMS = {"avi": "MJPG", "mkv": "FFV1", "mp4": "mp4v", "gif": "", "png": ""}
+"""By the ending: the coding."""
 
 READERS = {
     "rig": Reader("rig.toml", read_rig),
@@ -152,6 +161,7 @@ READERS = {
     "opencv json": Reader("opencv.json", read_opencv),
     "opencv xml": Reader("opencv.xml", read_opencv),
     "ros": Reader("ros.yaml", read_camera_info),
+    **{f"film {end}": Reader(f"film.{end}", _film) for end in FILMS},
     **{f"picture {end}": Reader(f"picture.{end}", _picture) for end in ("png", "jpg", "tif", "bmp", "pgm")},
 }
 
@@ -297,6 +307,8 @@ def _pictures(folder: Path) -> None:
     for end in ("png", "jpg", "tif", "bmp", "pgm"):
         cv2.imwrite(str(folder / f"picture.{end}"), grey)
     cv2.imwrite(str(folder / "logo.png"), grey)
+    for end, coding in FILMS.items():
+        write_film(folder / f"film.{end}", sweep(4, size=(32, 32)), coding)
 
 
 def _tables(folder: Path) -> None:
