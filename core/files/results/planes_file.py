@@ -108,6 +108,7 @@ class _PlanesFile(ResultFile):
     free_planes: list[_Plane] = Field(default_factory=list)
     angles_deg: _Angles = Field(default_factory=_Angles)
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
+    free_covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite | None = Field(None, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
     scale_assumed: bool | None = None
@@ -138,16 +139,18 @@ class _PlanesFile(ResultFile):
     @model_validator(mode="after")
     def _shapes(self) -> _PlanesFile:
         size = 3 * len(self.planes)
-        if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
-            raise Clash(
-                "covariance",
-                Message(
-                    "fan.covariance_shape",
-                    "is not {size} × {size} numbers, as {planes} planes need",
-                    size=size,
-                    planes=len(self.planes),
-                ),
-            )
+        for name in ("covariance", "free_covariance"):
+            given = getattr(self, name)
+            if given is not None and [len(row) for row in given] != [size] * size:
+                raise Clash(
+                    name,
+                    Message(
+                        "fan.covariance_shape",
+                        "is not {size} × {size} numbers, as {planes} planes need",
+                        size=size,
+                        planes=len(self.planes),
+                    ),
+                )
         if self.by_camera is not None and [len(row) for row in self.by_camera] != [_PARAMETERS] * size:
             raise Clash(
                 "by_camera",
@@ -240,6 +243,7 @@ def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> Non
             "camera_id": camera_id(camera),
             "version": __version__,
             "covariance": calibration.fan.covariance,
+            "free_covariance": calibration.free.covariance if calibration.free.has_covariance else None,
             "by_camera": calibration.by_camera,
             "scale_sd": calibration.scale_sd,
             "scale_assumed": calibration.scale_assumed,
@@ -299,7 +303,12 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         tuple(LightPlane(np.array(plane.pi)) for plane in file.planes),
         None if file.covariance is None else np.array(file.covariance),
     )
-    free = Fan(tuple(LightPlane(np.array(plane.pi)) for plane in file.free_planes)) if file.free_planes else fan
+    free = fan
+    if file.free_planes:
+        free = Fan(
+            tuple(LightPlane(np.array(plane.pi)) for plane in file.free_planes),
+            None if file.free_covariance is None else np.array(file.free_covariance),
+        )
     return FanCalibration(
         fan=fan,
         free=free,

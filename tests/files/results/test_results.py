@@ -27,7 +27,7 @@ from core.image.targets.target_view import TargetView
 from core.inspect.causes import cause_named
 from core.inspect.results import Contribution, PairCandidate
 from core.messages import Message, plain
-from core.model import Camera
+from core.model import Camera, Fan
 from core.scan.common_errors import CommonErrors
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import FrameFeatures, ScanFeatures
@@ -170,6 +170,18 @@ def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camer
     assert camera_id(used.camera) == camera_id(corrected)
     assert np.array_equal(used.covariance, 0.5 * camera.covariance)
     assert fan.camera_used(camera) is camera
+
+
+def test_how_sure_the_free_planes_are_is_kept_and_its_absence_is_not_known(tmp_path, camera, fan):
+    path, sure = tmp_path / "planes.json", Fan(fan.free.planes, np.diag(np.full(3 * len(fan.free.planes), 1e-14)))
+    write_planes(path, replace(fan, free=sure), camera.camera)
+    back = read_planes(path, camera.camera)
+    assert np.array_equal(back.free.covariance, sure.covariance) and back.free.angle_sds == sure.angle_sds
+    edited(path, lambda t: t["free_covariance"].pop())
+    with pytest.raises(InputError, match="free_covariance is not"):
+        read_planes(path, camera.camera)
+    edited(path, lambda t: t.pop("free_covariance"))  # as of an earlier version
+    assert not read_planes(path, camera.camera).free.has_covariance
 
 
 def test_a_normal_that_contradicts_pi_is_refused(tmp_path, camera, fan):
