@@ -102,11 +102,22 @@ def print_cache_note() -> None:
         talk.print_line(tr("note: {note}", note=note))
 
 
-def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
-    """Run all steps on a recording set and return their results; compile loops first if that was never done."""
+def run_all(
+    folder: Path,
+    out: Path,
+    chosen: Options,
+    progress: Progress,
+    beside: SecondProcess | None,
+    *,
+    over_simulated: bool = False,
+) -> RunResult:
+    """Run all steps on a recording set and return their results; compile loops first if that was never done.
+
+    `over_simulated`: results of another simulated set in the folder are replaced.
+    """
     print_cache_note()
     compile_ahead(progress)
-    return run(folder, out, chosen, progress, beside)
+    return run(folder, out, chosen, progress, beside, over_simulated=over_simulated)
 
 
 def show_run(result: RunResult, *, as_json: bool) -> None:

@@ -197,7 +197,7 @@ def demo(
 
         options = arguments.options({"sigma_cut": _QUICK_CUT_MM} if quick else {}, _PART)
         with bar("run") as progress, _sample(progress, quick=quick) as folder:
-            result = measuring.run_all(folder, out, options, progress, beside)
+            result = measuring.run_all(folder, out, options, progress, beside, over_simulated=True)
     measuring.show_run(result, as_json=json)
     if result.gauge is not None and not json:
         line = thickness_line(result.gauge, output.words())

@@ -9,6 +9,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.folder_lock import alone_in
+from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import (
     CHECK,
@@ -64,6 +65,8 @@ def run(
     options: Options | None = None,
     progress: Progress = silent,
     beside: SecondProcess | None = None,
+    *,
+    over_simulated: bool = False,
 ) -> RunResult:
     """Measure a recording set from its pictures to its report; the files of each step are written once it is done.
 
@@ -72,18 +75,21 @@ def run(
     set_folder
         The recording set.
     out_folder
-        Where the results go; made if it is not there. Results of an earlier run in it are replaced.
+        Where the results go; made if it is not there. Results of an earlier run of this set in it are replaced.
     options
         Method and cuts.
     progress
         Called with what is being done; may raise Cancelled.
     beside
         A second process that takes part of the work; the results are the same, byte for byte.
+    over_simulated
+        Whether results of another set are replaced, too, if that one is simulated.
 
     Raises
     ------
     InputError
-        If anything in the set keeps it from being measured; what was finished before stays, whole.
+        If anything in the set keeps it from being measured, or the folder has the results of another set; what was
+        finished before stays, whole.
     """
     options = options or Options()
     recording_set = open_set(set_folder).with_channel(options.channel)
@@ -92,10 +98,30 @@ def run(
     require_scan(recording_set)
     work = Workspace.open(recording_set, out_folder, options.part)
     with alone_in(work.out):
+        _require_own_results(work, over_simulated=over_simulated)
         work.clear()
         going = _Run(work, options, progress, beside)
         do_steps(going)
         return going.result()
+
+
+def _require_own_results(work: Workspace, *, over_simulated: bool) -> None:
+    """Raise InputError if the results in the folder are of a scan that shares no picture with that of the set."""
+    try:
+        record = work.record()
+    except InputError:
+        return  # what cannot be read tells of no set, and is measured anew
+    measured = {digest for name, digest in record.inputs.items() if name.startswith("scan/")}
+    if not measured or (over_simulated and record.simulated):
+        return
+    if not any(file_hash(frame) in measured for frame in work.recording_set.frames):
+        raise InputError(
+            Message(
+                "run.of_other_set", "it has the results of other pictures, of the set {name}", name=record.set_name
+            ),
+            where=work.out,
+            todo=Message("advice.other_out", "name another --out, or remove the folder if they are not wanted"),
+        )
 
 
 class _Run:

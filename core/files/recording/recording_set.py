@@ -211,6 +211,13 @@ def open_set(folder: Path) -> RecordingSet:
             where=folder,
             todo=Message("advice.set_needs_pictures", "it needs rig.toml and pictures in camera, planes and scan"),
         )
+    above = resolved(folder).parent
+    if not (folder / RIG).exists() and (above / RIG).is_file():
+        raise InputError(
+            Message("set.folder_within", "this is a folder within a recording set, not the set"),
+            where=folder,
+            todo=Message("advice.folder_above", "name the folder above it, {above}", above=above),
+        )
     rig = read_rig(folder / RIG)
     places = {part: folder / part for part in PARTS}
     if (folder / CHECK).is_dir():
