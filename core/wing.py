@@ -12,9 +12,11 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
+from pathlib import Path
 from typing import Generic, Protocol, TypeGuard, TypeVar
 
 from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, found_at, left_out, names_of_entry_points
+from core.errors import InputError
 from core.messages import Message
 
 OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
@@ -27,13 +29,9 @@ OUR_COMMANDS: Mapping[str, str] = {"compare": GEOMETRY, "plan": "rig_planning", 
 OUR_EXPORTS: Mapping[str, str] = {"compared": GEOMETRY, "compared-csv": GEOMETRY}
 """The kinds of export of our own wings, likewise."""
 
-NO_READER_OF_STUDIES = Message(
-    "plugin.no_reader_of_studies", "studies are read by the wing {name}, which is not there", name=STUDIES
-)
-"""What is wrong where no wing reads them, as an InputError tells it with `how_to_get`."""
-
 Row = TypeVar("Row")
 
+_NOT_THERE = Message("plugin.not_there", "which is not there")
 _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
 
@@ -186,13 +184,21 @@ def rows_of_wings(
     return found, tuple(unusable)
 
 
-def how_to_get(name: str) -> Message:
-    """How a wing that is not there is had again, or why it cannot be loaded, as the end of a sentence."""
+def no_reader_of_studies(where: Path | str = "") -> InputError:
+    """Make the error on studies, those of `where`, that cannot be read because no wing reads them."""
+    why, todo = why_away(STUDIES)
+    what = Message("plugin.no_reader_of_studies", "studies are read by the wing {name}, {why}", name=STUDIES, why=why)
+    return InputError(what, where=where, todo=todo)
+
+
+def why_away(name: str) -> tuple[Message, Message]:
+    """Return what is wrong with a wing that is not there, as it follows its name in a sentence, and what to do."""
     if name in left_out() or any(wing.name == name for wing in wings().away):
-        return Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
+        return _NOT_THERE, Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
+    install = Message("advice.wing_missing", "install Trisect with all its folders")
     if why := _why_not_loaded(name):
-        return Message("advice.wing_broken", "its folder is there, but cannot be loaded: {why}", why=why)
-    return Message("advice.wing_missing", "install Trisect with all its folders")
+        return Message("plugin.not_loaded", "which cannot be loaded ({why})", why=why), install
+    return _NOT_THERE, install
 
 
 def _why_not_loaded(name: str) -> Message | str:

@@ -15,7 +15,7 @@ from typer.main import get_group
 from core.door import found_at
 from core.errors import Cancelled, InputError
 from core.messages import Message, plain
-from core.wing import OUR_COMMANDS, how_to_get, wings
+from core.wing import OUR_COMMANDS, why_away, wings
 
 _ERRORS: Any = sys.modules[typer.BadParameter.__module__]
 """Typer carries click in a package of its own, which is called otherwise in other versions of it."""
@@ -39,15 +39,15 @@ class Commands(TyperGroup):
         """Find the command that was typed (called by Typer); InputError if there is no such command."""
         if args[0] not in self.commands:
             if ctx.parent is None and (wing := missing_wing(args[0])):
-                raise InputError(
-                    Message(
-                        "cli.command_of_missing_wing",
-                        'the command "{command}" is of the wing {wing}, which is not there',
-                        command=args[0],
-                        wing=wing,
-                    ),
-                    todo=how_to_get(wing),
+                why, todo = why_away(wing)
+                what = Message(
+                    "cli.command_of_missing_wing",
+                    'the command "{command}" is of the wing {wing}, {why}',
+                    command=args[0],
+                    wing=wing,
+                    why=why,
                 )
+                raise InputError(what, todo=todo)
             what = Message("cli.no_such_command", 'there is no command "{command}"', command=args[0])
             raise InputError(what, todo=_see_help(ctx, difflib.get_close_matches(args[0], self.commands)))
         return super().resolve_command(ctx, args)

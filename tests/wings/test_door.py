@@ -246,7 +246,8 @@ def test_a_command_of_ours_whose_folder_cannot_be_loaded_says_why(tmp_path, monk
     for module in [name for name in sys.modules if name.startswith("broken_wings")]:
         del sys.modules[module]
     why = "ModuleNotFoundError: No module named 'no_such_module'"
-    assert f"which is not there; its folder is there, but cannot be loaded: {why}." in told
+    wrong = f'the command "study" is of the wing studies, which cannot be loaded ({why}); install Trisect with all'
+    assert wrong in told and "not there" not in told
 
 
 def test_where_the_folder_of_wings_is_gone_there_are_none():

@@ -120,7 +120,8 @@ def test_a_reader_of_studies_that_fails_is_told_once_and_the_report_is_made(
     kept = tuple(KeptStudy(name, "grr", plain(name)) for name in ("ab", "cd"))
     told = with_words(content, tmp_path, Project(studies=kept))
     (note,) = told.notes[len(content.notes) :]
-    assert told.studies == () and str(note).startswith(f"studies of the package lab-read 1.2 failed: {why}")
+    what = "No study can be read from ab and cd: studies of the package lab-read 1.2 failed"
+    assert told.studies == () and str(note).startswith(f"{what}: {why}")
 
 
 def test_a_study_that_its_reader_refuses_is_refused(install, monkeypatch, tmp_path):

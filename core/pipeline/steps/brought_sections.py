@@ -16,7 +16,7 @@ from core.messages import Message
 from core.report.content import BroughtSection, ReportContent, ReportedStudy
 from core.report.facts.fact import Fact
 from core.report.wording import Words
-from core.wing import GEOMETRY, NO_READER_OF_STUDIES, STUDIES, how_to_get, wings
+from core.wing import GEOMETRY, no_reader_of_studies, wings
 
 
 def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
@@ -57,9 +57,9 @@ def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent
         return content
     reading = next(((wing, origin) for wing, origin in wings().wings if wing.reads_study), None)
     if reading is None:
-        raise InputError(NO_READER_OF_STUDIES, where=paths[0], todo=how_to_get(STUDIES))
+        raise no_reader_of_studies(paths[0])
     wing, origin = reading
-    found, failed = list[ReportedStudy](), list[Message]()
+    found, failed = list[ReportedStudy](), dict[Message, list[str]]()
     for path in paths:
         try:
             study = found_at(wing.reads_study)(path / STUDY if path.is_dir() else path)
@@ -67,11 +67,15 @@ def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent
         except InputError:
             raise
         except Exception as error:  # noqa: BLE001  (as above)
-            failed.append(failure(origin or OURS, wing.name, error))
+            name = path.parent.name if path.name == STUDY else path.name
+            failed.setdefault(failure(origin or OURS, wing.name, error), []).append(name)
             continue
         found.append(study)
-    notes = (*content.notes, *dict.fromkeys(failed))
-    return replace(content, studies=(*content.studies, *found), notes=notes)
+    notes = [
+        Message("plugin.study_not_read", "No study can be read from {studies:and}: {why}", studies=names, why=why)
+        for why, names in failed.items()
+    ]
+    return replace(content, studies=(*content.studies, *found), notes=(*content.notes, *notes))
 
 
 def _try(title: str, facts: tuple[Fact, ...]) -> None:

@@ -35,7 +35,7 @@ from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, pa
 from core.messages import Message
 from core.progress import Progress, silent
 from core.report.content import ReportContent
-from core.wing import OUR_EXPORTS, how_to_get
+from core.wing import OUR_EXPORTS, why_away
 
 
 def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
@@ -236,13 +236,15 @@ def export_kind(name: str) -> ExportKind:
     """Find the kind of export that is called `name`; InputError that names all kinds if there is none."""
     if name not in exports() and name in OUR_EXPORTS:
         wing = OUR_EXPORTS[name]
+        why, todo = why_away(wing)
         what = Message(
             "export.format_of_missing_wing",
-            'the format "{name}" is of the wing {wing}, which is not there',
+            'the format "{name}" is of the wing {wing}, {why}',
             name=name,
             wing=wing,
+            why=why,
         )
-        raise InputError(what, where="--format", todo=how_to_get(wing))
+        raise InputError(what, where="--format", todo=todo)
     if name not in exports():
         raise InputError(
             Message("export.no_such_format", 'there is no format "{name}"', name=name),

@@ -6,14 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import finished, up_to_date
 from core.files.project.view_file import read_view
 from core.files.results.export_list import exports
 from core.messages import capital
 from core.report.template import SECTIONS
-from core.wing import NO_READER_OF_STUDIES, STUDIES, how_to_get, studies_can_be_read
+from core.wing import no_reader_of_studies, studies_can_be_read
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
 from workbench.pages.presenter import StepPresenter
@@ -74,7 +73,7 @@ class ReportPresenter(StepPresenter):
     def _no_studies(self) -> str:
         """Give the reason why no study is printed, or ""; no tab of a wing that is not there is named."""
         if not studies_can_be_read():
-            return capital(text_of(InputError(NO_READER_OF_STUDIES, todo=how_to_get(STUDIES))))
+            return capital(text_of(no_reader_of_studies()))
         ticked = any(study.included for study in self.project.studies)
         return "" if ticked else tr("No study is ticked on the Inspect page, tab Studies.")
 
