@@ -12,11 +12,9 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
-from pathlib import Path
 from typing import Generic, Protocol, TypeGuard, TypeVar
 
 from core.door import WITHOUT, Brought, Origin, by_entry_points, by_folders, found_at, left_out, names_of_entry_points
-from core.errors import InputError
 from core.messages import Message
 
 OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings"
@@ -184,11 +182,11 @@ def rows_of_wings(
     return found, tuple(unusable)
 
 
-def no_reader_of_studies(where: Path | str = "") -> InputError:
-    """Make the error on studies, those of `where`, that cannot be read because no wing reads them."""
+def no_reader_of_studies() -> tuple[Message, Message]:
+    """Return what is wrong where no wing reads studies, and what to do."""
     why, todo = why_away(STUDIES)
     what = Message("plugin.no_reader_of_studies", "studies are read by the wing {name}, {why}", name=STUDIES, why=why)
-    return InputError(what, where=where, todo=todo)
+    return what, todo
 
 
 def why_away(name: str) -> tuple[Message, Message]:

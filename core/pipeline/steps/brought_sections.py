@@ -57,7 +57,8 @@ def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent
         return content
     reading = next(((wing, origin) for wing, origin in wings().wings if wing.reads_study), None)
     if reading is None:
-        raise no_reader_of_studies(paths[0])
+        what, todo = no_reader_of_studies()
+        raise InputError(what, where=paths[0], todo=todo)
     wing, origin = reading
     found, failed = list[ReportedStudy](), dict[Message, list[str]]()
     for path in paths:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import finished, up_to_date
 from core.files.project.view_file import read_view
@@ -73,7 +74,8 @@ class ReportPresenter(StepPresenter):
     def _no_studies(self) -> str:
         """Give the reason why no study is printed, or ""; no tab of a wing that is not there is named."""
         if not studies_can_be_read():
-            return capital(text_of(no_reader_of_studies()))
+            what, todo = no_reader_of_studies()
+            return capital(text_of(InputError(what, todo=todo)))
         ticked = any(study.included for study in self.project.studies)
         return "" if ticked else tr("No study is ticked on the Inspect page, tab Studies.")
 
