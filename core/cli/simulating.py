@@ -97,7 +97,7 @@ def simulate(
         bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
     ] = False,
     no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
-    fan_lines: Annotated[int, typer.Option(metavar="N", help="Lines of the fan: 3, or 1.")] = SCENARIO.fan_lines,
+    fan_lines: Annotated[int, typer.Option(metavar="N", help="Lines of the fan: 3, 1, or 0.")] = SCENARIO.fan_lines,
     no_hand_laser: Annotated[
         bool, typer.Option("--no-hand-laser", help="Frames of the fan alone, for `trisect profile`.")
     ] = False,
@@ -108,7 +108,7 @@ def simulate(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help=r"A TOML file with tables \[laser], \[lens], \[sensor], \[room], \[plates], \[warming]: "
+            help=r"A TOML file with tables \[laser], \[lens], \[sensor], \[room], \[plates], \[warming], \[boards]: "
             "what else real rigs do.",
         ),
     ] = None,

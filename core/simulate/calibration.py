@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
 from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.change import STABLE
-from core.files.recording.rig import GaugeSpec, rig_to_toml
+from core.files.recording.rig import PLANE_TARGET, GaugeSpec, KnownPlaneTarget, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.uncertainty.part import TARGET_AT_20, Part
 from core.model import Pose
 from core.model.arrays import Array
@@ -20,7 +20,7 @@ from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import Map
 from core.simulate.rig import FULL_SIZE, Rig
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
-from core.simulate.scene.boards import printed
+from core.simulate.scene.boards import PLATES, printed
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.patterns import Pattern
 from core.simulate.scene.stage import table_pose
@@ -34,17 +34,9 @@ nearly white, and dark enough for the fan's stripes to stand out."""
 CHECK_SEEDS = 10_000
 """Poses of a check draw their noise by numbers from here on, those of the calibration below."""
 
-PLATES: dict[str, Target] = {
-    "checkerboard": Checkerboard(17, 12, 10.0),
-    "charuco": Charuco(12, 9, 15.0, 11.25, "DICT_4X4_100"),
-    "circle_grid": CircleGrid(13, 10, 14.0),
-    "black_square": BlackSquare(60.0),
-}
-"""Plates by their kind, lengths in mm: the black square is the paper's, the others are about as large together."""
 
-
-def rig_toml(scenario: Scenario) -> str:
-    """Make the text of the rig.toml that describes a scenario's rig."""
+def rig_toml(scenario: Scenario, known_planes: Mapping[str, KnownPlaneTarget] = MappingProxyType({})) -> str:
+    """Make the text of the rig.toml that describes a scenario's rig, and what its `known_planes` are."""
     gauge = (
         GaugeSpec(float(scenario.height_mm), GAUGE_TOLERANCE_MM)
         if scenario.object in ("block", "narrow-block")
@@ -64,6 +56,8 @@ def rig_toml(scenario: Scenario) -> str:
             part=_part(scenario) if scenario.stated else Part(),
             mosaic="RGGB" if scenario.sensor.colour and scenario.sensor.raw else None,
             simulated=True,
+            known_planes=known_planes,
+            unstated=frozenset() if scenario.fan_lines or scenario.boards.plate else frozenset({PLANE_TARGET}),
         )
     )
 

@@ -16,6 +16,7 @@ from core.calibrate.change import displaced_fan
 from core.errors import InputError
 from core.files.atomic import folder_beside, write_bytes, write_text
 from core.files.pictures import write_picture
+from core.files.recording.recording_set import KNOWN_PLANES
 from core.held_files import remove_tree, rename
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
@@ -28,6 +29,7 @@ from core.simulate.rig import FULL_SIZE, Optics, Rig, paper_rig
 from core.simulate.scan import ScanStage, StageEffects
 from core.simulate.scenario import Scenario
 from core.simulate.scene.image import Picture, Sensor, generator
+from core.simulate.scene.known_planes import stated_planes
 from core.simulate.scene.laser import Sheet
 from core.simulate.scene.scene import Scene
 from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
@@ -36,6 +38,8 @@ from core.simulate.truth import TRUTH_FILE, Truth, load_truth, save_truth, truth
 from core.simulate.turn import Turn
 from core.threads import ordered_map
 
+BOARDS_GREY = 150.0
+"""8-bit grey level of a white surface in the room's light while the boards beside the object are taken."""
 RENDER_THREADS = 2
 """Pictures rendered and written at once: as many as a small machine has cores."""
 
@@ -88,6 +92,8 @@ def simulate_set(
 
 
 def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Progress, earlier: Path | None) -> None:
+    if not scenario.fan_lines:
+        scenario = replace(scenario, plane_poses=0, check_poses=0)
     for part in (made / "camera", made / "planes", made / "scan", hidden):
         part.mkdir(parents=True)
     rays = ray_map(rig.camera)
@@ -126,11 +132,22 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 
     first = ["reference"] if scenario.reference and scenario.hand_laser else []
     _write_all(made, shoot, [*first, *shots], progress, "frames", scenario.sensor)
-    write_text(made / "rig.toml", rig_toml(scenario), sync=False)
+    boards = {board.name: board for board in stage.scene.boards}
+
+    def shoot_boards(name: str) -> Iterator[tuple[str, Picture]]:
+        yield f"{KNOWN_PLANES}/{name}.png", stage.boards(list(boards).index(name), BOARDS_GREY)
+
+    if boards:
+        (made / KNOWN_PLANES).mkdir()
+        _write_all(made, shoot_boards, list(boards), progress, "boards", scenario.sensor)
+    known = stated_planes(scenario, stage.scene.boards, rig.camera)
+    write_text(made / "rig.toml", rig_toml(scenario, known), sync=False)
     swept = shots if scenario.hand_laser else {}
     sweeps: dict[str, LightPlane] = {name: moving[index][0].plane for name, (index, _) in swept.items()}
     maps = stage.maps
-    truth = Truth(rig.camera, rig.fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table)
+    places = {name: board.pose for name, board in boards.items()}
+    fan = rig.fan if scenario.fan_lines else None
+    truth = Truth(rig.camera, fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table, places)
     save_truth(hidden, truth, asdict(scenario))
 
 
@@ -153,6 +170,8 @@ def scenario_rig(scenario: Scenario) -> Rig:
         turn = Turn.about_the_view(WORK_POINT, scenario.setup.fan_turned_deg)
         planes = tuple(turn.plane(plane) for plane in rig.fan.planes)
         rig = replace(rig, fan=Fan(planes), fan_emitter=turn.point(rig.fan_emitter))
+    if not scenario.fan_lines:
+        return replace(rig, fan_beam=replace(rig.fan_beam, peak_grey=0.0))
     return rig if scenario.fan_lines == rig.fan.lines else replace(rig, fan=Fan((rig.fan.planes[1],)))
 
 
@@ -207,13 +226,17 @@ def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list
 
 def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
     """Make the stage after the object, table or camera was moved in the scan; None if nothing is moved."""
-    if not (scenario.lifted_mm or scenario.pushed_mm or scenario.table_mm or scenario.bumped_px):
+    aside_mm = scenario.boards.moved_mm
+    if not (scenario.lifted_mm or scenario.pushed_mm or scenario.table_mm or scenario.bumped_px or aside_mm):
         return None
     scene, _ = build_scene(scenario)
     assert scene.pose_cam_table is not None
     up, aside = scene.pose_cam_table.rotation[:, 2], scene.pose_cam_table.rotation[:, 0]
     scene = scene.moved(Pose(np.eye(3), scenario.lifted_mm * up + scenario.pushed_mm * aside))
     scene = scene.moved(Pose(np.eye(3), -scenario.table_mm * up), with_table=True)
+    if aside_mm and scene.boards:
+        first = scene.boards[0].moved(Pose(np.eye(3), aside_mm * aside))
+        scene = replace(scene, boards=(first, *scene.boards[1:]))
     return _stage(scenario, _drifted(rig, scenario.bumped_px), scene)
 
 
@@ -246,6 +269,7 @@ def _stage(scenario: Scenario, rig: Rig, scene: Scene) -> ScanStage:
             scenario.frames,
             scenario.readout_ms / 1000,
             scenario.transport,
+            scenario.boards.shaded,
         ),
     )
 
@@ -277,7 +301,9 @@ def _write_all(
 def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict[str, Pose], dict[str, Pose]]:
     """Copy camera/ and planes/ of an earlier set; returns the poses in them."""
     truth = load_truth(earlier)
-    same = truth.camera.image_size == rig.camera.image_size and abs(truth.fan.pis - rig.fan.pis).max() < 1e-12
+    lit = rig.fan_beam.peak_grey > 0
+    same_fan = not lit or (truth.fan is not None and abs(truth.fan.pis - rig.fan.pis).max() < 1e-12)
+    same = truth.camera.image_size == rig.camera.image_size and same_fan
     if not same:
         raise InputError(
             Message("simulate.other_rig", "its rig or picture size is another one"),

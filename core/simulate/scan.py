@@ -26,6 +26,8 @@ from core.simulate.scene.window import hand_hides, visible_window_share, window_
 
 LAMP = np.array([-0.35, -0.5, -0.79])
 """Direction (3,) from the scene to the lamp that gives the room's light its shade, in the camera frame."""
+LOW_LAMP, LOW_LAMP_DEG = np.array([0.1, 0.8, -0.6]), 3.0
+"""The same of a lamp low in front, and half of the angle that it has: it casts shadows of objects behind them."""
 DIFFUSE_SHARE, LAMP_SHARE = 0.4, 0.6
 """Of the room's light, from all sides and from the lamp."""
 
@@ -52,6 +54,8 @@ class StageEffects:
     frames: int = 1
     readout_s: float = 0.0
     transport: Transport = ONE_WAY
+    low_lamp: bool = False
+    """Whether the room's light comes low from the front."""
 
     def over(self, index: int) -> float:
         """Compute the share of the scan, 0 to 1, that has passed at frame `index`; 0 for the reference, index −1."""
@@ -107,6 +111,11 @@ class ScanStage:
     def reference(self) -> Picture:
         """Render the reference picture: room light and fan, the hand-held laser off."""
         return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
+
+    def boards(self, number: int, grey: float) -> Picture:
+        """Render picture `number` of the boards as they lie, all lasers off; white that faces the lamp has `grey`."""
+        light = self._room(grey)
+        return self.sensor.expose(light, generator(self.seed, "boards", number), light)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
         """Render frame `index`, lit by one of the hand-held laser's `sheets`, or by several during its exposure."""
@@ -197,10 +206,12 @@ class ScanStage:
         return self.effects.lens.image(light, rig.blur_px, rig.camera, self.maps.depth, rig.scale)
 
     def _room(self, grey: float) -> Map:
-        facing = np.maximum(self.maps.normals @ (LAMP / np.linalg.norm(LAMP)).astype(np.float32), 0)
-        window = np.radians(self.effects.transport.window_deg)
+        low, transport = self.effects.low_lamp, self.effects.transport
+        lamp = LOW_LAMP if low else LAMP
+        facing = np.maximum(self.maps.normals @ (lamp / np.linalg.norm(lamp)).astype(np.float32), 0)
+        window = np.radians(transport.window_deg or (LOW_LAMP_DEG if low else 0.0))
         if window:
-            facing *= visible_window_share(self.scene, self.maps, window_places(LAMP, float(window)))
+            facing *= visible_window_share(self.scene, self.maps, window_places(lamp, float(window)))
             self._lamp_light = self.maps.albedo * (np.float32(grey * LAMP_SHARE) * facing)
         return self._image(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)))
 
@@ -210,9 +221,10 @@ class ScanStage:
         if self._lamp_light is None or not transport.hand_mm or not sheets:
             return None
         sheet = sheets[len(sheets) // 2]
+        lamp = LOW_LAMP if self.effects.low_lamp else LAMP
         behind = sheet.emitter - transport.hand_mm * sheet.axis
         window = float(np.radians(transport.window_deg))
-        return self._image(self._lamp_light * hand_hides(self.maps, LAMP, window, (behind, transport.hand_mm)))
+        return self._image(self._lamp_light * hand_hides(self.maps, lamp, window, (behind, transport.hand_mm)))
 
     def _with_speckle(self, light: Map, rng: np.random.Generator) -> Map:
         if self._speckle is None:
@@ -232,4 +244,4 @@ def _textured(maps: SurfaceMaps, texture: float, scale: float, seed: int) -> Sur
     coarse = rng.standard_normal((height // step + 2, width // step + 2), dtype=np.float32)
     patches = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_CUBIC)
     albedo = maps.albedo * np.clip(1 + np.float32(texture) * patches, LEAST_FACTOR, LARGEST_FACTOR)
-    return SurfaceMaps(maps.points, maps.normals, albedo, maps.table)
+    return replace(maps, albedo=albedo)

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.files.limits import TOML_BYTES
 from core.files.reading import read_text, toml_of
 from core.messages import Message
+from core.simulate.effects.boards import NO_BOARDS, BoardsBeside
 from core.simulate.effects.laser import GAUSSIAN_LASER, LaserEffects
 from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.plates import TRUE_PLATES, PlateEffects
@@ -110,8 +111,10 @@ class Scenario:
         How fan, table and hand are turned beside their usual places; a table as well.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
+    boards
+        What lies beside the object, and is known to lie there; a table as well.
     fan_lines
-        3, or 1: the fan's middle line alone.
+        3, or 1: the fan's middle line alone; 0: there is no fan, nor pictures of one.
     hand_laser
         False: frames of the fan alone, and a pose of the plane target on the table, planes/stage.
     travel_mm
@@ -170,6 +173,7 @@ class Scenario:
     warming: Warming = NO_WARMING
     setup: Setup = USUAL_SETUP
     transport: Transport = ONE_WAY
+    boards: BoardsBeside = NO_BOARDS
 
     def __post_init__(self) -> None:
         choices = (
@@ -177,7 +181,7 @@ class Scenario:
             ("camera_target", CAMERA_TARGETS),
             ("plane_target", PLANE_TARGETS),
             ("bits", (8, 16)),
-            ("fan_lines", (1, 3)),
+            ("fan_lines", (0, 1, 3)),
         )
         for name, allowed in choices:
             if getattr(self, name) not in allowed:
@@ -235,7 +239,7 @@ class Scenario:
             )
 
     def with_effects_of(self, other: Scenario) -> Scenario:
-        """Copy laser, lens, sensor, room, plates, warming, setup and transport from the scenario `other`."""
+        """Copy laser, lens, sensor, room, plates, warming, setup, transport and boards from the scenario `other`."""
         effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
         return replace(self, **effects)
 

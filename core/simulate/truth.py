@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -48,11 +48,12 @@ class _Content(ResultFile):
     """truth.json, but for the scenario."""
 
     camera: _Camera
-    fan: _Fan
+    fan: _Fan | None
     sweeps: dict[str, Row3]
     camera_poses: dict[str, _Row6]
     plane_poses: dict[str, _Row6]
     object: dict[str, Any]
+    known_planes: dict[str, _Row6] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -62,7 +63,7 @@ class Truth:
     Parameters
     ----------
     camera, fan
-        As rendered.
+        As rendered; a rig may have no fan.
     sweeps
         Light plane of each frame of the scan, in order, by the frames' names.
     camera_poses, plane_poses
@@ -74,16 +75,20 @@ class Truth:
         (height, width) float32, z in mm seen by each pixel centre during the scan; 0 where nothing is seen.
     table
         (height, width), True where that is the table.
+    known_planes
+        `pose_cam_target` of the boards beside the object, by their names, before anything is moved; of a bent one that
+        of the plane through its middle.
     """
 
     camera: Camera
-    fan: Fan
+    fan: Fan | None
     sweeps: Mapping[str, LightPlane]
     camera_poses: Mapping[str, Pose]
     plane_poses: Mapping[str, Pose]
     thing: Mapping[str, Any]
     depth: NDArray[np.float32]
     table: NDArray[np.bool_]
+    known_planes: Mapping[str, Pose] = field(default_factory=dict)
 
 
 def truth_folder(set_folder: Path) -> Path:
@@ -93,7 +98,7 @@ def truth_folder(set_folder: Path) -> Path:
 
 def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
     """Write the truth of a simulated set (camera, planes, poses, depths) and its scenario into `folder`."""
-    content = {
+    content: dict[str, Any] = {
         "unit": "mm",
         "scenario": dict(scenario),
         "camera": {
@@ -101,12 +106,16 @@ def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
             "matrix": truth.camera.matrix.tolist(),
             "distortion": truth.camera.distortion.tolist(),
         },
-        "fan": {"pi": truth.fan.pis.tolist(), "angles_deg": np.degrees(truth.fan.angles).tolist()},
+        "fan": None
+        if truth.fan is None
+        else {"pi": truth.fan.pis.tolist(), "angles_deg": np.degrees(truth.fan.angles).tolist()},
         "sweeps": {name: plane.pi.tolist() for name, plane in truth.sweeps.items()},
         "camera_poses": {name: pose.vector.tolist() for name, pose in truth.camera_poses.items()},
         "plane_poses": {name: pose.vector.tolist() for name, pose in truth.plane_poses.items()},
         "object": dict(truth.thing),
     }
+    if truth.known_planes:
+        content["known_planes"] = {name: pose.vector.tolist() for name, pose in truth.known_planes.items()}
     write_text(folder / TRUTH_FILE, json.dumps(content, indent=1) + "\n")
     packed = io.BytesIO()
     np.savez(packed, depth=truth.depth, table=truth.table)  # packing it would take a quarter of the rendering's time
@@ -134,11 +143,12 @@ def load_truth(folder: Path) -> Truth:
     with fitting(path):
         return Truth(
             Camera(camera.image_size, np.array(camera.matrix), np.array(camera.distortion)),
-            Fan(tuple(LightPlane(np.array(pi)) for pi in content.fan.pi)),
+            None if content.fan is None else Fan(tuple(LightPlane(np.array(pi)) for pi in content.fan.pi)),
             {name: LightPlane(np.array(pi)) for name, pi in content.sweeps.items()},
             {name: Pose.from_vector(vector) for name, vector in content.camera_poses.items()},
             {name: Pose.from_vector(vector) for name, vector in content.plane_poses.items()},
             content.object,
             maps["depth"],
             maps["table"],
+            {name: Pose.from_vector(vector) for name, vector in content.known_planes.items()},
         )

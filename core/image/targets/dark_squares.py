@@ -20,6 +20,9 @@ LEAST_SIDE = 14
 """Side in pixels below which a quadrilateral's shape cannot be judged."""
 
 
+FINER = (0.004, 0.008, 0.015, 0.03)
+"""Shares of the length that a long rectangle's corners may be off by, in turn: by more they are no longer near."""
+
 MOST_PIECES = 12
 """Pieces that stripes may cut a square into."""
 
@@ -32,10 +35,11 @@ class DarkSquares:
     cut_off: int
 
 
-def dark_squares(picture: NDArray[np.uint8], line: float = 0.0) -> DarkSquares:
+def dark_squares(picture: NDArray[np.uint8], line: float | None = None) -> DarkSquares:
     """Find dark, convex quadrilaterals with light all round them; stripes of light may cross them.
 
-    They are dark throughout, or outlines as wide as `line`, a share of the root of their area.
+    They are about squares; with a `line`, rectangles of any sides: dark throughout where it is 0, else outlines as wide
+    as `line`, a share of the root of their area.
     """
     cut_off = 0
     found: list[Array] = []
@@ -68,7 +72,7 @@ def _thresholded(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
 
 
 def _quadrilaterals(
-    picture: NDArray[np.uint8], mask: NDArray[np.uint8], contrast: float, line: float
+    picture: NDArray[np.uint8], mask: NDArray[np.uint8], contrast: float, line: float | None
 ) -> tuple[list[Array], int]:
     """Whole dark quadrilaterals of `mask`, and how many convex dark regions the picture's border cuts."""
     found, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
@@ -85,7 +89,7 @@ def _quadrilaterals(
         if _touches_border(contour, mask.shape):
             cut += bool(0.01 * mask.size < area < 0.5 * mask.size and len(_polygon(hull)) in (3, 4, 5))
             continue
-        corners = _polygon(hull)
+        corners = _polygon(hull) if line is None else _finest_polygon(hull)
         if len(corners) != 4 or not 0.9 < area / cv2.contourArea(corners) < 1.1:
             continue
         quad = clockwise(corners.reshape(4, 2).astype(np.float64))
@@ -101,8 +105,15 @@ def _sides(quad: Array) -> Array:
     return lengths
 
 
-def _polygon(hull: NDArray[np.int32]) -> NDArray[np.int32]:
-    return np.asarray(cv2.approxPolyDP(hull, 0.03 * cv2.arcLength(hull, True), True), dtype=np.int32)
+def _polygon(hull: NDArray[np.int32], off: float = 0.03) -> NDArray[np.int32]:
+    """The hull with corners left out where it is `off` by no more than that share of its length."""
+    return np.asarray(cv2.approxPolyDP(hull, off * cv2.arcLength(hull, True), True), dtype=np.int32)
+
+
+def _finest_polygon(hull: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The quadrilateral nearest to the hull; if there is none, a polygon of other corners."""
+    polygons = [_polygon(hull, off) for off in FINER]
+    return next((polygon for polygon in polygons if len(polygon) == 4), polygons[-1])
 
 
 def _touches_border(contour: NDArray[np.int32], shape: tuple[int, ...]) -> bool:

@@ -17,7 +17,7 @@ from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
 from core.simulate.blur import blurred
-from core.simulate.calibration import CAMERA_GREY, PLANE_GREY, PLATES
+from core.simulate.calibration import CAMERA_GREY, PLANE_GREY
 from core.simulate.live.motion import HandPath, PlateMotion
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import Map, ray_map
@@ -25,7 +25,7 @@ from core.simulate.recording import scan_of, scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
-from core.simulate.scene.boards import printed
+from core.simulate.scene.boards import PLATES, printed
 from core.simulate.scene.image import NoiseTile, Picture, Sensor, generator
 from core.simulate.scene.patterns import Pattern, draw_pattern
 from core.simulate.scene.stage import aim_of, build_scene

@@ -19,6 +19,15 @@ SQUARE_PLATE_MM = 160.0
 """Side of the plate that carries the black square: long stripes beside it."""
 
 
+PLATES: dict[str, Target] = {
+    "checkerboard": Checkerboard(17, 12, 10.0),
+    "charuco": Charuco(12, 9, 15.0, 11.25, "DICT_4X4_100"),
+    "circle_grid": CircleGrid(13, 10, 14.0),
+    "black_square": BlackSquare(60.0),
+}
+"""Plates by their kind, lengths in mm: the black square is the paper's, the others are about as large together."""
+
+
 def printed(target: Target) -> Pattern:
     """Make the plate with the pattern of `target` printed on it, in the target's frame."""
     if isinstance(target, Checkerboard):

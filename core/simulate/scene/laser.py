@@ -117,7 +117,8 @@ def laser_light(
     across = beam.section.across(sheet.off_light(points, v) / sigma)
     shine = maps.albedo[v, u] * cosine
     if scene.material != MATT:
-        mine = ~maps.table[v, u] if maps.table.size else np.ones(len(v), np.bool_)
+        matt = maps.table if maps.matt is None else maps.matt
+        mine = ~matt[v, u] if matt.size else np.ones(len(v), np.bool_)
         normals, row = maps.normals[v[mine], u[mine]], v[mine]
         if scene.material.scattered:
             across[mine] = _wandered(scene.material, sheet, points[mine], normals, row, sigma[mine])

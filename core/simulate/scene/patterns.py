@@ -7,7 +7,7 @@ any phase and angle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,6 +51,10 @@ class Pattern:
         set_field(self, "albedo", frozen_array(self.albedo, shape, "albedo"))
         dots: ArrayLike = np.empty((0, 2)) if self.dots is None else self.dots
         set_field(self, "dots", frozen_array(dots, (None, 2), "dots"))
+
+    def on(self, background: float) -> Pattern:
+        """Lay the plate on something of another albedo."""
+        return replace(self, background=background)
 
     @property
     def outline(self) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,16 @@ from core.compiled import compiled
 from core.model import Camera, Pose
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.rays import Map, ray_map
+from core.simulate.scene.patterns import Pattern, draw_pattern
 from core.simulate.scene.raster import draw_triangles
+from core.simulate.scene.wrong_plates import points_on_bowed, rays_to_bowed
 
 TABLE_ALBEDO, OBJECT_ALBEDO = 0.55, 0.7
 """Of a grey table and of a light, matt part."""
 FARTHEST_MM = 5000.0
 """Depth beyond which nothing is seen."""
+BOW_STRIPS = 40
+"""Strips of a bowed board's surface, as what casts shadows has it: off by less than a shadow ray's clearance."""
 TILE = 16
 """Side in px of the squares whose extent in space is known, see `SurfaceMaps`; chosen by speed."""
 
@@ -99,11 +103,40 @@ class Sphere:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Board:
+    """Printed board called `name`, at `pose` in the camera frame, its left and right edges bent forward by `bow_mm`.
+
+    It is matt, and what is behind its outline has the pattern's background.
+    """
+
+    name: str
+    pattern: Pattern
+    pose: Pose
+    bow_mm: float = 0.0
+
+    def moved(self, motion: Pose) -> Board:
+        """Move the board by `motion` in the camera frame."""
+        pose = Pose(motion.rotation @ self.pose.rotation, motion.apply(self.pose.translation[None])[0])
+        return replace(self, pose=pose)
+
+    @property
+    def triangles(self) -> Array:
+        """Its surface as triangles (T, 3, 3) in mm: strips along a bowed one."""
+        (x0, y0, _), (x1, y1, _) = self.pattern.outline.min(axis=0), self.pattern.outline.max(axis=0)
+        share = np.linspace(-1.0, 1.0, (BOW_STRIPS if self.bow_mm else 1) + 1)
+        x, z = (x0 + x1) / 2 + share * (x1 - x0) / 2, -self.bow_mm * share**2
+        top, bottom = (np.column_stack([x, np.full_like(x, y), z]) for y in (y0, y1))
+        upper = np.stack([top[:-1], top[1:], bottom[1:]], axis=1)
+        lower = np.stack([top[:-1], bottom[1:], bottom[:-1]], axis=1)
+        return self.pose.apply(np.concatenate([upper, lower]).reshape(-1, 3)).reshape(-1, 3, 3)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Scene:
     """Table and objects on it, all in the camera frame.
 
     `pose_cam_table` maps table coordinates (origin on the table, z up out of it, towards the camera) into the camera
-    frame; None means there is no table. `material` is that of the objects; the table is matt.
+    frame; None means there is no table. `material` is that of the objects; the table and `boards` beside them are matt.
     """
 
     pose_cam_table: Pose | None
@@ -111,6 +144,7 @@ class Scene:
     spheres: tuple[Sphere, ...] = ()
     table_albedo: float = TABLE_ALBEDO
     material: Material = MATT
+    boards: tuple[Board, ...] = ()
 
     @classmethod
     def on_table(
@@ -119,35 +153,38 @@ class Scene:
         *things: Mesh | Sphere,
         table_albedo: float = TABLE_ALBEDO,
         material: Material = MATT,
+        boards: tuple[Board, ...] = (),
     ) -> Scene:
         """Make a scene in the camera frame of a table and objects given in the table's frame."""
         moved = [thing.moved(pose_cam_table) for thing in things]
         meshes = tuple(thing for thing in moved if isinstance(thing, Mesh))
         spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
-        return cls(pose_cam_table, meshes, spheres, table_albedo, material)
+        return cls(pose_cam_table, meshes, spheres, table_albedo, material, boards)
 
     def moved(self, motion: Pose, *, with_table: bool = False) -> Scene:
-        """Move the objects of the scene by `motion` in the camera frame; the table moves too only if `with_table`."""
-        table = self.pose_cam_table
+        """Move the objects of the scene by `motion` in the camera frame; table and boards move only if `with_table`."""
+        table, boards = self.pose_cam_table, self.boards
+        if with_table:
+            boards = tuple(board.moved(motion) for board in boards)
         if with_table and table is not None:
             table = Pose(motion.rotation @ table.rotation, motion.apply(table.translation[None])[0])
         meshes = tuple(mesh.moved(motion) for mesh in self.meshes)
         spheres = tuple(sphere.moved(motion) for sphere in self.spheres)
-        return Scene(table, meshes, spheres, self.table_albedo, self.material)
+        return Scene(table, meshes, spheres, self.table_albedo, self.material, boards)
 
     @property
     def occluders(self) -> Array:
         """Triangles (T, 3, 3) that can cast a shadow; the table is below everything and casts none."""
-        if not self.meshes:
-            return np.empty((0, 3, 3))
-        return np.concatenate([mesh.triangles for mesh in self.meshes])
+        shading = [*(mesh.triangles for mesh in self.meshes), *(board.triangles for board in self.boards)]
+        return np.concatenate(shading) if shading else np.empty((0, 3, 3))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfaceMaps:
     """Maps of the surface in each pixel, float32: point (h, w, 3) in mm, outward unit normal (h, w, 3), albedo (h, w).
 
-    A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen. `tiles` is filled in:
+    A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen, `matt` where the table
+    or a board is (None: where the table is). `tiles` is filled in:
     smallest and largest coordinates (2, rows, columns, 3) in mm within each tile of TILE × TILE pixels, so that what is
     near a plane is found without looking at every pixel.
     """
@@ -156,6 +193,7 @@ class SurfaceMaps:
     normals: Map
     albedo: Map
     table: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
+    matt: NDArray[np.bool_] | None = None
     tiles: Map = field(init=False)
 
     def __post_init__(self) -> None:
@@ -191,11 +229,28 @@ def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> Surfa
         table &= ~seen
     for sphere in scene.spheres:
         table &= ~_see_sphere(sphere, rays, depth, normals, albedo)
+    matt = table.copy() if scene.boards else None
+    for board in scene.boards:
+        seen = _see_board(board, rays, depth, normals, albedo)
+        table &= ~seen
+        assert matt is not None
+        matt |= seen
     depth[depth == FARTHEST_MM] = 0
     points = np.empty((*shape, 3), np.float32)
     np.multiply(rays, depth[..., None], out=points[..., :2])
     points[..., 2] = depth
-    return SurfaceMaps(points, normals, albedo, table)
+    return SurfaceMaps(points, normals, albedo, table, matt)
+
+
+def _see_board(board: Board, rays: Map, depth: Map, normals: Map, albedo: Map) -> NDArray[np.bool_]:
+    """Draw one board into the maps; returns where it is seen."""
+    bent = rays_to_bowed(board.pattern, board.pose, rays, board.bow_mm)
+    points, printed = draw_pattern(board.pattern, board.pose, bent)
+    points = points_on_bowed(board.pattern, board.pose, rays, points, board.bow_mm) * (points[..., 2:] > 0)
+    seen = (points[..., 2] > 0) & (points[..., 2] < depth)
+    depth[seen], albedo[seen] = points[seen, 2], printed[seen]
+    normals[seen] = -board.pose.rotation[:, 2]
+    return np.asarray(seen, dtype=np.bool_)
 
 
 @compiled()

@@ -11,6 +11,8 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.effects.setup import USUAL_SETUP, Setup
 from core.simulate.scenario import Scenario
+from core.simulate.scene.boards import PLATES
+from core.simulate.scene.known_planes import boards_of
 from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl, turned
 from core.simulate.scene.scene import Material, Mesh, Scene, Sphere
 
@@ -44,7 +46,8 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
     material = _material(scenario, pose)
-    scene = Scene.on_table(pose, *things, material=material)
+    boards = boards_of(scenario, PLATES[scenario.plane_target], pose)
+    scene = Scene.on_table(pose, *things, material=material, boards=boards)
     up = pose.rotation[:, 2]
     figures: dict[str, object] = {"kind": scenario.object, "table_normal": up.tolist()}
     figures["table_point"] = pose.translation.tolist()

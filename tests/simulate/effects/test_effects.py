@@ -13,7 +13,7 @@ from core.calibrate.fan.poses.plane_pose import measure_plane_pose
 from core.errors import InputError
 from core.files.pictures import compression_of, decode_colours, read_picture
 from core.files.recording.recording_set import open_set
-from core.simulate.calibration import PLATES, CalibrationPictures
+from core.simulate.calibration import CalibrationPictures
 from core.simulate.effects.laser import LaserEffects
 from core.simulate.effects.lens import LensEffects
 from core.simulate.effects.plates import PlateEffects
@@ -24,7 +24,7 @@ from core.simulate.rays import ray_map
 from core.simulate.recording import changed_rig, scan_of, scenario_rig, simulate_set
 from core.simulate.rig import Optics
 from core.simulate.scenario import Scenario
-from core.simulate.scene.boards import printed
+from core.simulate.scene.boards import PLATES, printed
 from core.simulate.scene.image import Sensor, generator
 from core.simulate.scene.laser import laser_light
 from core.simulate.scene.mirrors import mirrored_light, mirrors_of

@@ -6,13 +6,13 @@ import pytest
 
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 from core.model import Pose
-from core.simulate.calibration import PLATES, CalibrationPictures
+from core.simulate.calibration import CalibrationPictures
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Optics, paper_rig
 from core.simulate.scenario import Scenario
-from core.simulate.scene.boards import BLACK, WHITE, printed
+from core.simulate.scene.boards import BLACK, PLATES, WHITE, printed
 from core.simulate.scene.image import Sensor, generator
 from core.simulate.scene.patterns import Pattern, draw_pattern
 from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres
