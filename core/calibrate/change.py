@@ -125,9 +125,10 @@ def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
     """Make nine deviations of a rig, each changed in one way by one default standard uncertainty.
 
     Three turns of the fan about the laser and three shifts of it, two shifts of the picture, and the focal length.
+    Where there is no fan the first six change nothing.
     """
     size = DEFAULT_STABILITY
-    pivot = laser_of(fan)
+    pivot = laser_of(fan) if fan.lines else np.zeros(3)
     turned = (displaced_fan(fan, size.turn * axis, pivot) for axis in np.eye(3))
     shifted = (displaced_fan(fan, np.zeros(3), pivot, size.shift_mm * axis) for axis in np.eye(3))
     here = parameters_of(camera)

@@ -260,6 +260,25 @@ class FanCalibration:
         return replace(given, camera=self.camera, covariance=self.camera_covariance)
 
 
+NO_FAN = FanCalibration(
+    Fan(()),
+    Fan(()),
+    rms_mm=(),
+    angles=(),
+    free_angles=(),
+    pencil_gap_mm=math.nan,
+    constraint_suits=None,
+    verdict=None,
+    poses=(),
+    by_camera=np.zeros((0, len(CAMERA_PARAMETERS))),
+    scale_assumed=False,
+    converged=True,
+    points_off_alike=False,
+    flatness_assumed=False,
+)
+"""Of a rig that has no fan: nothing of it is uncertain."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class ProposedReadjustment:
     """Proposed re-adjustment of camera and fan, with its effects.

@@ -56,7 +56,9 @@ def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> O
 def require_run(folder: Path, out: Path) -> None:
     """Raise InputError if a set lacks something a whole run needs, or if results cannot be written to `out`."""
     found = open_set(folder)
-    for require in (require_camera, require_planes, require_scan):
-        require(found)
+    require_camera(found)
+    if found.rig.has_fan:
+        require_planes(found)
+    require_scan(found)
     require_outside(found, out)
     make_folder(out)

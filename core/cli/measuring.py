@@ -124,7 +124,10 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
     """Print the results of all steps of a recording set."""
     gauge, verdict = result.gauge, result.results.verdict
     rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
-    for of, facts in ((label("camera"), camera_facts(result.camera)), (label("planes"), planes_facts(result.fan))):
+    calibrated = [(label("camera"), camera_facts(result.camera))]
+    if result.fan.fan.lines:
+        calibrated.append((label("planes"), planes_facts(result.fan)))
+    for of, facts in calibrated:
         rows += output.fact_rows(named(of, facts), reader=Reader.TECHNICIAN)
     scan = scan_facts(result.frames, result.points, result.triangles)
     rows += [*output.fact_rows(scan, reader=Reader.TECHNICIAN), *output.left_out_rows(result.frames)]
@@ -133,7 +136,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
         **output.frames_json(result.frames, result.points),
         "triangles": result.triangles,
         "camera": output.camera_json(result.camera),
-        "planes": output.planes_json(result.fan),
+        **({"planes": output.planes_json(result.fan)} if result.fan.fan.lines else {}),
     }
     Shown(rows, values, result.notes, result.files).show(as_json=as_json)
 

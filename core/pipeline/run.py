@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.results import NO_FAN, CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.reading import file_hash
@@ -94,7 +94,8 @@ def run(
     options = options or Options()
     recording_set = open_set(set_folder).with_channel(options.channel)
     require_camera(recording_set)
-    require_planes(recording_set)
+    if recording_set.rig.has_fan:
+        require_planes(recording_set)
     require_scan(recording_set)
     work = Workspace.open(recording_set, out_folder, options.part)
     with alone_in(work.out):
@@ -138,6 +139,9 @@ class _Run:
         self._work, self._options, self._progress, self._beside = work, options, progress, beside
         recording_set = work.recording_set
         self._there = {*PARTS, CHECK} if recording_set.check else {*PARTS}
+        if not recording_set.rig.has_fan:
+            self._there -= {"planes", CHECK}
+            self.fan = NO_FAN
         self._asked = {"gauge"}
         self._checked: tuple[PoseFeatures, ...] | None = None
         self._seen = begin_looking(recording_set, options.for_scan, progress, beside)

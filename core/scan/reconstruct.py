@@ -113,10 +113,10 @@ def reconstruct(
         on_planes, of_plane = points_on_planes(features, planes, camera)
         firm = _held_from_turning(crossings.followed_by(on_planes), camera)[len(crossings) :]
         on_planes, of_plane = on_planes.select(firm), of_plane[firm]
-        met = np.unique(of_plane)
-        control = Control(fan, tuple(planes[number] for number in met))
+        used = np.unique(of_plane)
+        control = Control(fan, tuple(planes[number] for number in used))
         crossings = crossings.followed_by(on_planes)
-        line = np.concatenate([line, fan.lines + np.searchsorted(met, of_plane)])
+        line = np.concatenate([line, fan.lines + np.searchsorted(used, of_plane)])
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
     if not fan.lines:
         _require_planes(crossings, line, control, camera)
@@ -254,8 +254,9 @@ def _plane_fits(
         rays, sweep = camera.rays(uv), np.searchsorted(frames, crossings.a[used])
         inverse = np.einsum("mi,mi->m", rays, solved.read_out.planes(solved.sweeps.pis[sweep], uv[:, 1]))
         off_mm = 1 / inverse - 1 / (rays @ plane.pi)
-        rms_mm = float(np.sqrt(np.mean(off_mm**2))) if len(used) else float("nan")
-        fits.append(PlaneFit(plane.name, len(used), len(np.unique(sweep)), len(mine) - len(used), rms_mm))
+        rms_mm = float(np.sqrt(np.mean(off_mm**2))) if len(used) else 0.0
+        left_out = len(mine) - len(used)
+        fits.append(PlaneFit(plane.name, len(used), len(np.unique(sweep)), left_out, rms_mm, plane.pi, plane.outline))
     return tuple(fits)
 
 
@@ -415,7 +416,9 @@ def _fan_clouds(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fa
 
 
 def _flat(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> bool:
-    """Whether the fan's light lies on one plane."""
+    """Whether the fan's light lies on one plane, or known planes do without it: these are not one plane."""
+    if not fan.lines:
+        return False
     numbered_pieces = [(p, k) for p, k in zip(features.fan, lines.line, strict=True) if k != UNASSIGNED]
     rays = [camera.rays(piece.uv[::4]) for piece, _ in numbered_pieces]
     inverse_depths = [r @ fan.planes[k].pi for r, (_, k) in zip(rays, numbered_pieces, strict=True)]

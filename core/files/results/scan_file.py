@@ -6,6 +6,7 @@ thickness, without its pictures.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from itertools import zip_longest
 from pathlib import Path
@@ -39,8 +40,10 @@ from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import Cause, Causes, Suspect
+from core.scan.known_planes.points_on_planes import PlaneFit
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.part_light import PartLight
+from core.scan.plane_check import PlaneCheck, PlaneOff
 
 _TODO = Message(
     "advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET --out DIR")
@@ -81,6 +84,14 @@ _MEMBERS = {
     "common_fans": real("displaced", None, 3, optional=True),
     "common_sweeps": real("displaced", None, None, optional=True),
     "common_bends": real("displaced", None, 3, 3, optional=True),
+    "plane_names": texts("known planes", optional=True),
+    "plane_points": whole("known planes", 3, optional=True),
+    "plane_rms": real("known planes", optional=True),
+    "plane_pis": real("known planes", 3, optional=True),
+    "plane_outlines": real("known planes", None, 2, optional=True),
+    "plane_check": real(2, optional=True),
+    "plane_check_names": texts("checked planes", optional=True),
+    "plane_check_off": real("checked planes", 4, optional=True),
     "speckle_uv": real("speckle points", 2, optional=True),
     "speckle_cell": whole("speckle points", optional=True),
     "speckle_members": whole("cells", optional=True),
@@ -129,6 +140,10 @@ class ScanFile:
         What explains most of what the scan's crossings are off too much, the likeliest first; none where nothing is.
     part_light
         How much wider stripes are on the part than on the table; None if not known.
+    planes
+        The known planes that were used, and how well the sweeps' points agree with them.
+    plane_check
+        Of camera and fan by known planes, those that were left out for it included; None if there was none.
     """
 
     features: ScanFeatures
@@ -147,6 +162,8 @@ class ScanFile:
     unsure_share: float = 0.0
     causes: Causes = ()
     part_light: PartLight | None = None
+    planes: tuple[PlaneFit, ...] = ()
+    plane_check: PlaneCheck | None = None
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -167,6 +184,8 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "unsure_share": np.array(scan.unsure_share),
         **({} if scan.part_light is None else {"part_light": _packed_light(scan.part_light)}),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
+        **(_packed_planes(scan.planes) if scan.planes else {}),
+        **({} if scan.plane_check is None else _packed_check(scan.plane_check)),
         **(_packed(scan.causes) if scan.causes else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
@@ -224,7 +243,46 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         unsure_share=float(arrays.get("unsure_share", 0.0)),
         causes=_causes(arrays),
         part_light=_part_light(arrays),
+        planes=_planes(arrays),
+        plane_check=_plane_check(arrays),
     )
+
+
+def _packed_planes(planes: Sequence[PlaneFit]) -> dict[str, NDArray[Any]]:
+    return {
+        "plane_names": pack_texts([one.name for one in planes]),
+        "plane_points": np.array([(one.points, one.frames, one.left_out) for one in planes], dtype=np.int64),
+        "plane_rms": np.array([one.rms_mm for one in planes]),
+        "plane_pis": np.array([one.pi for one in planes]),
+        "plane_outlines": np.array([one.outline for one in planes]),
+    }
+
+
+def _planes(arrays: Arrays) -> tuple[PlaneFit, ...]:
+    if "plane_names" not in arrays:
+        return ()
+    names = unpack_texts(arrays["plane_names"])
+    columns = (arrays[f"plane_{name}"] for name in ("points", "rms", "pis", "outlines"))
+    return tuple(
+        PlaneFit(name, int(points), int(frames), int(left_out), float(rms), pi, outline)
+        for name, (points, frames, left_out), rms, pi, outline in zip(names, *columns, strict=True)
+    )
+
+
+def _packed_check(check: PlaneCheck) -> dict[str, NDArray[Any]]:
+    return {
+        "plane_check": np.array([check.squares, check.freedom], dtype=np.float64),
+        "plane_check_names": pack_texts([one.name for one in check.planes]),
+        "plane_check_off": np.array([(one.mm, one.turn, one.times, one.others_p) for one in check.planes]),
+    }
+
+
+def _plane_check(arrays: Arrays) -> PlaneCheck | None:
+    if "plane_check" not in arrays:
+        return None
+    names, off = unpack_texts(arrays["plane_check_names"]), arrays["plane_check_off"].tolist()
+    squares, freedom = arrays["plane_check"].tolist()
+    return PlaneCheck(tuple(PlaneOff(name, *row) for name, row in zip(names, off, strict=True)), squares, int(freedom))
 
 
 def _packed(causes: Causes) -> dict[str, NDArray[Any]]:

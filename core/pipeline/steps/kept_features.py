@@ -87,6 +87,7 @@ def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> 
         "program": text_hash(_SCAN_ROOMS),
         "channel": pictures.laser_channel("scan").channel,
         "mosaic": recording_set.rig.mosaic,
+        "fan": recording_set.rig.has_fan,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(settings.stripe) if settings.stripe else None,
         "frames": [recording_set.name_of(path) for path in recording_set.frames],

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -44,7 +44,7 @@ from core.model import Camera
 from core.model.arrays import Array
 from core.pipeline.steps.brought_sections import with_brought_sections
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration
+from core.pipeline.steps.workspace import HAS_FAN, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.wording import Words, target_in_words
@@ -163,8 +163,8 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
     InputError
         If a result is missing, damaged, or was measured with another calibration.
     """
-    calibration = read_calibration(out)
     record = record or read_run(out / FILES["run"])
+    calibration = read_calibration(out, has_fan=record.settings.get("scan", {}).get(HAS_FAN, True))
     gauge_path = out / FILES["gauge"]
     profiled = (out / FILES["profile"]).exists()
     cloud, mesh = _profiled(out, calibration) if profiled else _scanned(out, calibration)
@@ -242,10 +242,12 @@ def _light_profiles(out: Path, cloud: Cloud, gauge: GaugeResult) -> LightProfile
 
 def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[CalibrationMark, ...]:
     """Which calibrations these are, and since when."""
-    camera, fan = (file_hash(out / FILES[name]) for name in ("camera", "planes"))
-    return (
-        CalibrationMark("camera", camera_id(calibration.camera.camera), camera, record.made_at.get("camera")),
-        CalibrationMark("planes", planes_id(calibration.fan.fan), fan, record.made_at.get("planes")),
+    ids: dict[Literal["camera", "planes"], str] = {"camera": camera_id(calibration.camera.camera)}
+    if calibration.fan.fan.lines:
+        ids["planes"] = planes_id(calibration.fan.fan)
+    return tuple(
+        CalibrationMark(name, mark, file_hash(out / FILES[name]), record.made_at.get(name))
+        for name, mark in ids.items()
     )
 
 

@@ -18,7 +18,7 @@ from core.pipeline.steps.scan.pictures import SeenScan, require_frames
 from core.pipeline.steps.scan.results import Measured, scan_file, write_measured
 from core.pipeline.steps.scan.surface import begin_surface
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
-from core.pipeline.steps.workspace import Workspace
+from core.pipeline.steps.workspace import HAS_FAN, Workspace
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 from core.second_process import SecondProcess
@@ -64,7 +64,8 @@ def scan_step(
     with work.step("scan") as log:
         boards = see_boards(log.pictures, calibration, progress)
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
-        log.settings.update({**settings.run_settings("scan"), **log.pictures.laser_channel("scan").settings})
+        has_fan = {} if recording_set.rig.has_fan else {HAS_FAN: False}
+        log.settings.update({**settings.run_settings("scan"), **log.pictures.laser_channel("scan").settings, **has_fan})
         solved = solved_scan(
             features, boards.calibration, settings.solving(recording_set.rig.row_time_us), progress, boards.notes
         )
@@ -92,6 +93,6 @@ def scan_step(
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
         measured = Measured(scan, mesh)
-        file = scan_file(features, scan, judgement, calibration, log.pictures, settings, light)
+        file = scan_file(features, scan, judgement, calibration, log.pictures, settings, light, solved.check)
         write_measured(log, measured, file, progress)
     return measured

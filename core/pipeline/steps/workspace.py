@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import Deviation, calibration_deviations
-from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.results import NO_FAN, CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.folder_lock import NEW_FOLDER
@@ -40,6 +40,8 @@ CLEARED = (*reversed(_MADE_IN_ORDER), "run")
 _PLACED = (*_MADE_IN_ORDER, "run")
 """And in which they come."""
 
+HAS_FAN = "fan"
+"""Setting of the scan step in run.json: whether the rig has a fan, where it is stated that it has none."""
 RIDGES = "planes"
 """Folder beside the results with a picture of each pose on which the last search found no stripe: NAME-ridge.png. It is
 of the recording set alone: no result rests on it, nor it on any, and it is there where no planes came of the search."""
@@ -144,8 +146,11 @@ class Workspace:
         return {name: self.path(name) for name in FILES if self.path(name).exists()}
 
     def calibration(self) -> Calibration:
-        """Read camera.json and planes.json; InputError if one is missing or wrong, or they do not belong together."""
-        return read_calibration(self.out)
+        """Read camera.json and planes.json; InputError if one is missing or wrong, or they do not belong together.
+
+        Where the rig has no fan, the camera alone.
+        """
+        return read_calibration(self.out, has_fan=self.recording_set.rig.has_fan)
 
     def record(self) -> RunRecord:
         """Read run.json as it is so far; an empty record where there is none."""
@@ -277,9 +282,14 @@ def _same(one: Path, other: Path) -> bool:
     return other.exists() and file_hash(one) == file_hash(other)
 
 
-def read_calibration(out: Path) -> Calibration:
-    """Read camera.json and planes.json in `out`; InputError if one is missing or wrong, or they do not match."""
+def read_calibration(out: Path, *, has_fan: bool = True) -> Calibration:
+    """Read camera.json and planes.json in `out`; InputError if one is missing or wrong, or they do not match.
+
+    Of a rig that has no fan, only camera.json.
+    """
     camera = read_camera(out / FILES["camera"])
+    if not has_fan:
+        return Calibration(camera, NO_FAN)
     fan = read_planes(out / FILES["planes"], camera.camera)
     return Calibration(fan.camera_used(camera), fan)
 

@@ -56,6 +56,8 @@ class Mosaic(NamedTuple):
 
 def mosaic_of(fan: Sequence[Centreline], base: Picture) -> Mosaic:
     """Look for the trace of a colour mosaic along the fan's stripes in the picture `base` (H, W)."""
+    if not fan:
+        return Mosaic(None, None)
     return Mosaic(_width_if_interpolated(fan, base), _unevenness(fan, base))
 
 

@@ -22,7 +22,7 @@ from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import UNCOMPRESSED, Compression, NoiseModel, estimate_noise
 from core.image.stripes.running_statistics import median
 from core.image.stripes.settings import choose_settings
-from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.stripe import USUAL_STRIPE, StripeSettings
 from core.image.stripes.told_width import as_measured
 from core.messages import Message
 from core.model import Camera
@@ -151,7 +151,8 @@ class FeatureOptions:
 
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
     a `camera`, centrelines are crossed as they would be without its distortion. `compression` is that of each picture.
-    Of whole pictures only the `sites` are handed in; what is found is in px of the whole pictures.
+    Of whole pictures only the `sites` are handed in; what is found is in px of the whole pictures. `has_fan`: whether
+    there is a fan whose lines are looked for.
     """
 
     sweep_stripe: StripeSettings | None = None
@@ -161,6 +162,7 @@ class FeatureOptions:
     camera: Camera | None = None
     compression: Compression = UNCOMPRESSED
     sites: Sites = ALL_SITES
+    has_fan: bool = True
 
 
 class LaserLight(NamedTuple):
@@ -232,7 +234,8 @@ def read_reference(
     Raises
     ------
     InputError
-        If it shows no fan line; a further exposure may show none, where the first one is not saturated.
+        If it shows no line of a fan that is there; a further exposure may show none, where the first one is not
+        saturated.
     """
     options = options or FeatureOptions()
     full_scale = float(np.iinfo(picture.dtype).max)
@@ -259,6 +262,9 @@ def read_reference(
 def _fan_centrelines(
     base: NDArray[np.float32], full_scale: float, noise: NoiseModel, options: FeatureOptions
 ) -> tuple[StripeSettings, tuple[Centreline, ...]]:
+    if not options.has_fan:
+        return options.fan_stripe or USUAL_STRIPE, ()
+
     def look(settings: StripeSettings) -> tuple[Centreline, ...]:
         return extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
 

@@ -36,7 +36,7 @@ BESIDE = 1.5
 """Stripe σ on either side at which the board has to be free of print as well."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class PlaneFit:
     """Agreement of the sweeps' points on a known plane with it.
 
@@ -50,6 +50,8 @@ class PlaneFit:
         How many do not, as they disagree.
     rms_mm
         Of their depths from the plane's.
+    pi, outline
+        The plane τ (3,) in 1/mm, and where it is seen, (K, 2) in px.
     """
 
     name: str
@@ -57,6 +59,8 @@ class PlaneFit:
     frames: int
     left_out: int
     rms_mm: float
+    pi: Array
+    outline: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,6 +124,8 @@ class FanLines:
 
 def possible_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> tuple[FanLines, ...]:
     """Number the fan's centrelines in every way that some place of the laser allows, the likeliest first."""
+    if not fan.lines:
+        return (FanLines((), (), ()),)
     if fan.lines == 1:
         return (FanLines((0,) * len(pieces), (None,) * len(pieces), ((0,),) * len(pieces)),)
     rays = [camera.rays(piece.uv) for piece in pieces]

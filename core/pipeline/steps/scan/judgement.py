@@ -246,6 +246,8 @@ class StoredPoses:
 
 def stored_poses_of(work: Workspace, calibration: Calibration) -> StoredPoses:
     """Read the stored poses of the fan's calibration; for a re-adjusted fan those from before re-adjustment."""
+    if not calibration.fan.fan.lines:
+        return StoredPoses()
     try:
         return StoredPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
     except InputError as error:  # a scan needs nothing of them
@@ -266,9 +268,9 @@ def section_since(
 ) -> SectionChange:
     """Judge whether the skewness of the `fan`'s stripes in a scan has changed from that in its calibration's `poses`.
 
-    A re-adjusted fan rests on stripes of the day: it has not.
+    A re-adjusted fan rests on stripes of the day, and where there is no fan nothing does: it has not.
     """
-    if calibration.fan.readjusted is not None:
+    if calibration.fan.readjusted is not None or not calibration.fan.fan.lines:
         return SectionChange(surely=False)
     camera, of = calibration.camera.camera, calibration.fan.fan
     found = changed_section(poses, fan, camera, of)

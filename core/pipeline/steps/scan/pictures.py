@@ -96,7 +96,8 @@ def look_at_scan(
     pictures = PictureReader(found)
     times = progress if isinstance(progress, StageTimes) else None
     channel = pictures.laser_channel("scan")
-    looking = replace(feature_options(settings), compression=compression_of(found.frames[0], channel.channel))
+    compression = compression_of(found.frames[0], channel.channel)
+    looking = replace(feature_options(settings), compression=compression, has_fan=found.rig.has_fan)
     progress("reference", 0, 1)
     picture, note = reference_picture(pictures, camera, settings, progress)
     sites = pictures.sites("scan")

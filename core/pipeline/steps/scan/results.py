@@ -16,6 +16,7 @@ from core.progress import Progress
 from core.scan.features.extraction import ScanFeatures
 from core.scan.network.adjustment import SILENCED
 from core.scan.part_light import PartLight
+from core.scan.plane_check import PlaneCheck
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface.fused_surface import Mesh
 from core.settings.options import Options
@@ -55,10 +56,12 @@ def scan_file(
     pictures: PictureReader,
     settings: Options,
     light: PartLight | None,
+    check: PlaneCheck | None = None,
 ) -> ScanFile:
     """Collect the content of scan.npz; `pictures` must have taken the hashes of the files it rests on."""
     shown = _shown(scan.frames)
-    mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
+    with_fan = scan.crossings.with_fan & ~scan.crossings.on_plane
+    mine = (scan.crossings.a == shown) & with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(
         features=features,
         pis=scan.pis,
@@ -76,6 +79,8 @@ def scan_file(
         facts=judgement.facts,
         causes=judgement.causes,
         part_light=light,
+        planes=scan.planes,
+        plane_check=check,
     )
 
 
