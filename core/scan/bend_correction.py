@@ -15,6 +15,7 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model import Camera, Fan
 from core.model.arrays import Array
+from core.model.robust import median
 from core.progress import Progress, silent
 from core.scan.features.bent_crossings import BentLine, crossed_again
 from core.scan.features.extraction import ScanFeatures
@@ -99,7 +100,7 @@ def _stripes(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan,
     for numbers, frame in zip(scan.pis, scan.sweep_frames.tolist(), strict=True):
         for piece, line in enumerate(features.frames[frame].centrelines):
             if len(line) and (frame, piece) not in scan.second_bounces:
-                middle = np.median(line.uv[:, 1], keepdims=True)
+                middle = np.array([median(line.uv[:, 1])])
                 pi = scan.read_out.planes(numbers[None], middle)[0]
                 yield Stripe.of(frame, frame, piece, line, pi, camera, bends)
 

@@ -28,7 +28,7 @@ import numpy as np
 from core.image.stripes.centreline import Centreline
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
-from core.model.robust import mad_sd
+from core.model.robust import mad_sd, median
 from core.scan.footprint import footprint
 from core.scan.network.datum import main_plane
 from core.scan.surface.cloud import Cloud
@@ -107,12 +107,12 @@ def blur_of(plates: Iterable[tuple[Pose, Sequence[Centreline]]], camera: Camera,
             if len(seen) < FEWEST_POINTS:
                 continue
             inverse_depth = camera.rays(seen.uv) @ plate
-            off = [np.median(np.abs(camera.rays(seen.uv) @ pi / inverse_depth - 1)) for pi in fan.pis]
+            off = [median(np.abs(camera.rays(seen.uv) @ pi / inverse_depth - 1)) for pi in fan.pis]
             spread = footprint(seen.uv, fan.pis[int(np.argmin(off))], plate, camera) ** 2
             known = np.isfinite(spread)
             if known.sum() >= FEWEST_POINTS:
                 depth = 1 / inverse_depth[known]
-                rows.append((np.median(seen.width[known] ** 2), np.median(spread[known]), np.median(depth)))
+                rows.append((median(seen.width[known] ** 2), median(spread[known]), median(depth)))
     if len(rows) < _FEWEST_ROWS:
         return None
     square, spread, depth = np.array(rows).T

@@ -64,7 +64,7 @@ def plotter():
     made.close()
 
 
-def test_the_longest_stop_of_the_window_while_the_view_is_turned(benchmark, capsys, qtbot, ready, plotter):  # noqa: F811
+def test_the_longest_stop_of_the_window_while_the_view_is_turned(capsys, qtbot, ready, plotter):  # noqa: F811
     view = SceneView()
     qtbot.addWidget(view)
     view.resize(*SIZE)
@@ -94,20 +94,18 @@ def test_the_longest_stop_of_the_window_while_the_view_is_turned(benchmark, caps
         "passes: until everything is shown after the last turn": f"{whole:7.1f} ms",
         "pyvista, all in one: median, longest": f"{np.median(theirs):7.1f}, {theirs.max():7.1f} ms",
     })  # fmt: skip
-    benchmark(lambda: None)
 
 
-def test_the_point_that_a_click_means(benchmark, capsys, plotter):
+def test_the_point_that_a_click_means(capsys, plotter):
     points, camera = cloud(), SceneCamera.looking((0, 0, -1), (0, -1, 0), (0, 0, 500), 500)
     rows = {"own: nearest on the screen": milliseconds(lambda: nearest_point(points, camera, SIZE, (510, 360)), 7)}
     for kind in (vtkPointPicker, vtkCellPicker, vtkHardwarePicker):
         picker = kind()
         rows[kind.__name__] = milliseconds(lambda picker=picker: picker.Pick(510, 360, 0, plotter.renderer), 3)
     table(capsys, f"Picking in {POINTS:,d} points", {name: f"{np.median(ms):9.1f} ms" for name, ms in rows.items()})
-    benchmark(lambda: None)
 
 
-def test_projecting_points_for_labels_and_outlines(benchmark, capsys, plotter):
+def test_projecting_points_for_labels_and_outlines(capsys, plotter):
     points, camera = cloud(), SceneCamera.looking((0, 0, -1), (0, -1, 0), (0, 0, 500), 500)
     ours = np.median(milliseconds(lambda: camera.project(points, SIZE), 5))
     some = points[::100]
@@ -123,4 +121,3 @@ def test_projecting_points_for_labels_and_outlines(benchmark, capsys, plotter):
         "own camera": f"{ours:9.1f} ms",
         "VTK's camera, point by point": f"{theirs:9.1f} ms",
     })  # fmt: skip
-    benchmark(lambda: None)

@@ -18,7 +18,7 @@ from tests.scan.centreline_scan import ExactScan
 SIZE = (3840, 2748)
 
 
-def test_a_network_of_300_sweeps(benchmark, capsys):
+def test_a_network_of_300_sweeps(capsys):
     exact = ExactScan.of(Scenario(scale=0.5, frames=300))
     features = exact.measured(1)
     camera, fan = exact.rig.camera, exact.rig.fan
@@ -37,7 +37,6 @@ def test_a_network_of_300_sweeps(benchmark, capsys):
         ),
     }
     rows["together"] = sum(rows.values())
-    benchmark(lambda: None)
     shown = {name: f"{ms / 1e3:6.2f} s" + "   (goal: 3 s)" * (name == "together") for name, ms in rows.items()}
     table(capsys, f"Network of 300 sweeps, {len(crossings)} crossings", shown)
 
@@ -54,7 +53,7 @@ def cloud_of(points: int) -> Cloud:
     return Cloud(np.c_[x * z, y * z, z], np.c_[u, v], flat + 0.01, flat + 100.0, sweep, sweep, np.zeros((points, 3)))
 
 
-def test_fusion_and_mesh_of_five_million_points(benchmark, capsys):
+def test_fusion_and_mesh_of_five_million_points(capsys):
     rows = {}
     for points in (500_000, 1_000_000, 2_500_000, 5_000_000):
         cloud = cloud_of(points)
@@ -64,5 +63,4 @@ def test_fusion_and_mesh_of_five_million_points(benchmark, capsys):
         rows[f"{points:>9,d} points to {len(surface):,d} cells"] = (
             f"{(fusing + meshing) / 1e3:6.2f} s: fusion {fusing / 1e3:.2f}, mesh {meshing / 1e3:.2f}   (goal: 5 s)"
         )
-    benchmark(lambda: None)
     table(capsys, "Fusion and mesh", rows)

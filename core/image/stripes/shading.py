@@ -17,6 +17,7 @@ from scipy.ndimage import uniform_filter1d
 
 from core.image.stripes.centreline import Centreline
 from core.model.arrays import Array
+from core.model.robust import median
 
 WINDOW_PX = 41
 """Length in px over which the brightness is averaged, so that an evenly lit stripe with speckle is not suspected:
@@ -35,4 +36,4 @@ def shading_sigma(centreline: Centreline) -> Array:
     brightness = np.log(np.maximum(centreline.strength, _DARKEST))
     even = uniform_filter1d(brightness, window, mode="nearest")
     slope = uniform_filter1d(np.gradient(even), window, mode="nearest")
-    return np.asarray(np.median(centreline.width) ** 2 * np.abs(slope))
+    return np.asarray(median(centreline.width) ** 2 * np.abs(slope))

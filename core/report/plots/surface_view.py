@@ -104,7 +104,9 @@ def surface_picture(
     local = ground.local(np.asarray(vertices))
     viewpoint = viewpoint or usual_viewpoint()
     seen = local @ viewpoint.axes.T
-    extent = viewpoint.extent or _extent(seen[np.unique(mesh.triangles)] if solid else seen, aspect)
+    drawn = np.full(len(seen), not solid)
+    drawn[mesh.triangles] = True
+    extent = viewpoint.extent or _extent(seen[drawn], aspect)
     scale = width_px / (extent[1] - extent[0])
     rows = round(width_px / aspect)
     column, row = (seen[:, 0] - extent[0]) * scale - 0.5, (extent[3] - seen[:, 1]) * scale - 0.5

@@ -113,15 +113,15 @@ def fan_stretches(fan: Sequence[Centreline]) -> list[tuple[int, slice]]:
 
 def _shifts(difference: NDArray[np.int16] | NDArray[np.float32], fan: Sequence[Centreline]) -> Array:
     """Median shift (C,) in px of each stretch along its normals."""
-    found = [np.zeros(0)]
+    found = [np.zeros((0, STRETCH))]
     for piece in fan:
         count = len(piece) // STRETCH * STRETCH
         width = piece.width[:count]
         offset = piece.normal[:count] * width[:, None]
         flanks = _sample(difference, piece.uv[:count] + offset) - _sample(difference, piece.uv[:count] - offset)
         shift = flanks * width / (2 * np.exp(-0.5) * piece.strength[:count])
-        found.append(np.median(shift.reshape(-1, STRETCH), axis=1))
-    return np.concatenate(found)
+        found.append(shift.reshape(-1, STRETCH))
+    return np.asarray(np.median(np.concatenate(found), axis=1))
 
 
 @compiled()

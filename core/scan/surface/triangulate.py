@@ -10,6 +10,7 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model import Camera
 from core.model.arrays import Array
+from core.model.robust import median
 from core.scan.network.read_out import row_forms, row_planes
 from core.scan.surface.cloud import Cloud
 
@@ -40,7 +41,7 @@ class OwnLine:
         middle = arc_length(focal * rays) / self.cell_px - 0.5
         cells = np.arange(len(self.covariance))
         here = np.column_stack([np.interp(middle, cells, column) for column in self.covariance.T])
-        of_cell = float(np.median(centreline.sigma)) * np.sqrt(centreline.correlation_px / self.cell_px)
+        of_cell = median(centreline.sigma) * np.sqrt(centreline.correlation_px / self.cell_px)
         return np.asarray(slope * of_cell * np.einsum("ni,ni->n", forms, here))
 
 

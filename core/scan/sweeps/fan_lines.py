@@ -31,6 +31,7 @@ from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
+from core.model.robust import median
 
 UNASSIGNED = -1
 """The line of a centreline whose line is not known."""
@@ -309,7 +310,7 @@ def _with_faces(options: Options, allowed: Pairs, faces: Sequence[Face]) -> Opti
 
 def _choose(rays: Sequence[Array], fan: Fan, kept: Array, allowed: Pairs, faces: tuple[Face, ...]) -> FanLines:
     """Fix the pieces that have one choice; then, longest first, the others by the depth nearest to those fixed."""
-    depth = np.array([[np.median(r @ plane.pi) for plane in fan.planes] for r in rays])  # inverse depth, 1/mm
+    depth = np.array([[median(r @ plane.pi) for plane in fan.planes] for r in rays])  # inverse depth, 1/mm
     centre = np.array([np.median(r, axis=0) for r in rays])
     options = sure = _with_faces(_narrowed((depth > 0) & (kept > 0)[:, None], allowed), allowed, faces)
     for i in sorted(np.flatnonzero(sure.sum(axis=1) > 1).tolist(), key=lambda i: -len(rays[i])):

@@ -32,7 +32,7 @@ from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.residuals import over_picture
-from core.model.robust import Schedule, mad_sd
+from core.model.robust import Schedule, mad_sd, median
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.frames import FrameFeatures, FrameRecord
 from core.scan.known_planes.known_plane import Control
@@ -111,7 +111,7 @@ def find_second_bounces(
     solvable = np.isin(table.a, known) & (table.with_fan | np.isin(table.b, known))
     table, of_fan = table.select(solvable), line[np.concatenate([first, second])][solvable]
     missed, real = _judged(table, of_fan, bright, line[among], camera, fan)
-    width = {(f, p): WIDTH_IN_SIGMA * float(np.median(frames[f].centrelines[p].width)) for f, p in faint}
+    width = {(f, p): WIDTH_IN_SIGMA * median(frames[f].centrelines[p].width) for f, p in faint}
     found, missing, proven = 0, set[Piece](), set[Piece]()
     for piece in faint:
         mine = (table.a == piece[0]) & (table.piece_a == piece[1])
@@ -136,7 +136,7 @@ def _faint_pieces(frames: Sequence[FrameFeatures]) -> set[Piece]:
         found |= {
             (frame.index, number)
             for number, piece in enumerate(frame.centrelines)
-            if np.median(piece.strength) < FAINT * usual
+            if median(piece.strength) < FAINT * usual
         }
     return found
 

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model.arrays import Array
+from core.model.robust import median
 
 # Held by tests/image/stripes/lines/test_smoothing.py on straight lines, bends and arcs, and on arcs as a sphere shows
 # them.
@@ -79,7 +80,7 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         centreline.strength,
         sigma,
         centreline.saturated,
-        centreline.correlation_px * max(1.0, float(np.median((centreline.sigma / sigma) ** 2))),
+        centreline.correlation_px * max(1.0, median((centreline.sigma / sigma) ** 2)),
         centreline.skewness,
     )
 
