@@ -64,6 +64,8 @@ ROWS = (
     Finding("scan.checked_by_planes", Weight.INFORMATION, Effect.NONE,
             "Checked in this scan: the fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), so camera and "
             "fixed laser are as calibrated."),
+    Finding("scan.planes_alone", Weight.INFORMATION, Effect.NONE,
+            "Measured by known planes alone, {boards:and}: {points:,} points of sweeps on them agree to {mm:.2g} mm."),
     Finding("scan.planes_disagree", Weight.GRAVE, Effect.NO_PROOF,
             "Fan and {boards:and} disagree in this scan: {mm:.2g} mm and {degrees:.2g}°, {times:.1f} times what is "
             "expected. Most likely {cause}. The scan is measured by the fan alone: check the rig with the plane "
@@ -72,6 +74,8 @@ ROWS = (
     # What fixes the scale of heights
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,
             "The relief under the fan fixes the scale to {percent:.2g} %."),
+    Finding("scan.scale_by_planes", Weight.INFORMATION, Effect.NONE,
+            "The known planes fix the scale to {percent:.2g} %."),
     Finding("scan.scale_weak", Weight.CAUTION, Effect.WIDENS_U,
             "The scale of heights is fixed only to {percent:.2g} %: {error_mm:.2g} mm on a height of {height_mm:.0f} "
             "mm. {missing}."),

@@ -493,7 +493,7 @@ class ReportContent:
         artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
         house = {
             "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
-            "planes": planes_facts(self.fan),
+            "planes": planes_facts(self.fan) if self.fan.fan.lines else (),
             "check": () if self.check is None else check_facts(self.check),
             "artefact": tuple(chain(*artefacts)),
             "scan": self.scan_facts,

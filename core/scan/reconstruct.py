@@ -175,7 +175,7 @@ def reconstruct(
         scale=sweeps.scale,
         notes=bounces.notes
         + _ordered(features.notes + features.faults, solved)
-        + _datum_notes(solved.datum, found, camera)
+        + _datum_notes(solved.datum, found, camera, has_fan=fan.lines > 0)
         + (() if too_bright is None else (too_bright,))
         + notes_on_blur(exposure_blurs(features.frames, sheets, cloud, camera))
         + _unsure(found, cloud, solved, options)
@@ -186,7 +186,7 @@ def reconstruct(
         read_out=solved.read_out,
         moved=solved.moved or _left_out(features) >= LEAST_FRAMES or (None if solved.moved is None else False),
         second_bounces=bounces,
-        drifted=watched.drifts if watched.known else None,
+        drifted=_drifted(watched, solved, has_fan=fan.lines > 0),
         collapsed=sweeps.collapsed,
         fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
@@ -197,6 +197,13 @@ def reconstruct(
         crossing_lines=line,
         planes=_plane_fits(control, crossings, line, solved, camera),
     )
+
+
+def _drifted(watched: FanRest, solved: _Solved, *, has_fan: bool) -> bool | None:
+    """Whether the rig drifted; without a fan to watch, a drift would make crossings disagree as a movement does."""
+    if has_fan:
+        return watched.drifts if watched.known else None
+    return False if solved.moved is False else None
 
 
 def _held_from_turning(crossings: CrossingTable, camera: Camera) -> NDArray[np.bool_]:
@@ -315,10 +322,12 @@ def _changed(explanation: Explanation) -> Reason:
     )
 
 
-def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera) -> tuple[Message, ...]:
+def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera, *, has_fan: bool) -> tuple[Message, ...]:
     """What fixes the scale, or is missing, by what the fan's own points of all that was `found` show."""
     if datum is None:
         return ()
+    if not has_fan:
+        return (note_on_datum(datum, None),)
     own = np.flatnonzero(found.sweep <= FAN)
     own = own[:: max(1, len(own) // FAN_SAMPLE)]
     relief = relief_mm(camera.rays(found.uv[own]), 1 / found.points[own, 2]) if len(own) else 0.0
@@ -393,7 +402,7 @@ def _solve(
         sweeps,
         weights,
         reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
-        watched.note(names, len(sweeps.frames))
+        (watched.note(names, len(sweeps.frames)) if control.fan.lines else ())
         + (part.note(names, len(sweeps.frames)) if moved else ())
         + of_hand
         + (judged if explanation is None else (explanation.note,)),

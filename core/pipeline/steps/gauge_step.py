@@ -83,7 +83,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
                 progress=progress,
             )
         gauge = of_part(gauge, part)
-        if not checked_on_the_day(work.recording_set, calibration.fan):
+        by_planes = scan.plane_check is not None and scan.plane_check.passed
+        if not by_planes and not checked_on_the_day(work.recording_set, calibration.fan):
             gauge = replace(gauge, notes=(*gauge.notes, *notes_on_unchecked(gauge)))
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})

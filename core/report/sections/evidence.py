@@ -105,12 +105,7 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
-        look.fixed_text("Laser planes, as the camera sees them", "small_strong"),
-        fan_table(look, content.fan, other),
-        Spacer(0, 1 * mm),
-        pairs_table(look, texts_by_name(look, rest_of_planes(content.fan)), other, 27 * mm),
-        *(look.text(look.words(sentence), "small") for sentence in planes_sentences(content.fan)),
-        Spacer(0, 2 * mm),
+        *(_fan(look, content, other) if content.fan.fan.lines else ()),
         look.text(f"{look.words('Rig')} {content.rig_id}".strip(), "small_strong"),
         pairs_table(look, rig, other, 27 * mm),
         *more_line(look, len(content.rig) - limits.settings),
@@ -118,6 +113,17 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
     marks = [Spacer(0, 2 * mm), marks_table(look, content, TEXT_WIDTH)] if content.calibrations else []
     body = [side_by_side(camera, fan, TEXT_WIDTH, 0.42), *marks, *_check(look, content)]
     return [section(look, "calibrations", "Calibrations and rig", body)]
+
+
+def _fan(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
+    return [
+        look.fixed_text("Laser planes, as the camera sees them", "small_strong"),
+        fan_table(look, content.fan, width),
+        Spacer(0, 1 * mm),
+        pairs_table(look, texts_by_name(look, rest_of_planes(content.fan)), width, 27 * mm),
+        *(look.text(look.words(sentence), "small") for sentence in planes_sentences(content.fan)),
+        Spacer(0, 2 * mm),
+    ]
 
 
 def _check(look: ReportLook, content: ReportContent) -> list[Flowable]:

@@ -15,8 +15,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
+from core.messages import Message, plain
 from core.model import Camera
 from core.model.arrays import Array
 from core.scan.features.crossings import CrossingTable, Index
@@ -26,14 +28,15 @@ from core.scan.known_planes.known_plane import KnownPlane
 
 FROM_EDGES_PX = 4.0
 """Px from the outline within which nothing is taken, beside three standard deviations of the stripe."""
-LEAST_COVERED = 0.5
-"""Share of a cell that has to lie on the plane."""
+LEAST_COVERED_PX = 6.0
+"""Px of a cell that have to lie on the plane: between the marks of a board there are no more."""
 OFF_LINE_PX = 1.0
 """Px beside the common line, and five standard uncertainties, beyond which a cell lies on something else."""
 LEAST_CELLS = 2
 """Cells of a frame on a plane, at least: with one the line has no direction."""
 BESIDE = 1.5
-"""Stripe σ on either side at which the board has to be free of print as well."""
+"""Stripe σ about a point within which the board has to be free of print as well: the brightness edge of a mark would
+pull it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -78,6 +81,13 @@ class _Cell:
     sigma: float
 
 
+def note_on_planes_alone(fits: Sequence[PlaneFit]) -> Message:
+    """Make a note that a scan was measured by known planes alone, with how well the sweeps' points agree with them."""
+    points = sum(fit.points for fit in fits)
+    mm = np.sqrt(sum(fit.points * fit.rms_mm**2 for fit in fits) / max(points, 1))
+    return note_of("scan.planes_alone", boards=tuple(plain(fit.name) for fit in fits), points=points, mm=float(mm))
+
+
 def points_on_planes(
     features: ScanFeatures, planes: Sequence[KnownPlane], camera: Camera
 ) -> tuple[CrossingTable, Index]:
@@ -86,13 +96,13 @@ def points_on_planes(
     `camera` takes the distortion off.
     """
     cell_px, width = features.crossings.half_length_px, features.crossings.share_b.shape[1]
-    usable = [_usable(plane, features.image_size) for plane in planes]
+    faces = [_Face.of(plane, features.image_size) for plane in planes]
     cells = [
         cell
         for frame in features.frames
         for piece, line in enumerate(frame.centrelines)
-        for plane, free in enumerate(usable)
-        for cell in _cells(plane, frame.index, piece, line, free, camera, cell_px)
+        for plane, face in enumerate(faces)
+        for cell in _cells(plane, frame.index, piece, line, face, camera, cell_px)
     ]
     cells.sort(key=lambda cell: (cell.plane, cell.frame, cell.piece, cell.number))
     kept: list[tuple[_Cell, Array]] = []
@@ -101,13 +111,30 @@ def points_on_planes(
     return bent_back(_table(kept, cell_px, width), camera), np.array([c.plane for c, _ in kept], dtype=np.int64)
 
 
-def _usable(plane: KnownPlane, image_size: tuple[int, int]) -> NDArray[np.bool_]:
-    """(H, W) True inside the outline but not at its edges, and off what is printed."""
-    inside = np.zeros(image_size[::-1], dtype=np.uint8)
-    cv2.fillPoly(inside, [np.rint(plane.outline).astype(np.int32)], 1)
-    if plane.marks is not None:
-        inside[plane.marks] = 0
-    return inside > 0
+@dataclass(frozen=True, eq=False, slots=True)
+class _Face:
+    """Where a board is seen: `inside` its outline (H, W), and what is `plain` on it, without print."""
+
+    inside: NDArray[np.bool_]
+    plain: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, plane: KnownPlane, image_size: tuple[int, int]) -> _Face:
+        filled = np.zeros(image_size[::-1], dtype=np.uint8)
+        cv2.fillPoly(filled, [np.rint(plane.outline).astype(np.int32)], 1)
+        inside = filled > 0
+        return cls(inside, inside if plane.marks is None else inside & ~plane.marks)
+
+    def carries(self, line: Centreline) -> NDArray[np.bool_]:
+        """Flag the points (N,) of a centreline that lie on plain board, clear of its edges and of print."""
+        on = _at(self.plain, line.uv) & ~line.saturated
+        if not on.any():
+            return on
+        width, ways = line.width[:, None], (line.normal, line.tangent, -line.normal, -line.tangent)
+        for way in ways:
+            on &= _at(self.inside, line.uv + (FROM_EDGES_PX + 3 * width) * way)
+            on &= _at(self.plain, line.uv + BESIDE * width * way)
+        return on
 
 
 def _cells(
@@ -115,23 +142,14 @@ def _cells(
     frame: int,
     piece: int,
     line: Centreline,
-    free: NDArray[np.bool_],
+    face: _Face,
     camera: Camera,
     cell_px: float,
 ) -> list[_Cell]:
     """The cells of one centreline that lie on one plane."""
     if len(line) < 2:
         return []
-    near = free[_pixel(line.uv[:, 1], free.shape[0]), _pixel(line.uv[:, 0], free.shape[1])]
-    if not near.any():
-        return []
-    reach = np.maximum(BESIDE * line.width, FROM_EDGES_PX + 3 * line.width)[:, None]
-    on = near & ~line.saturated
-    for places in (
-        *(line.uv + sign * BESIDE * line.width[:, None] * line.normal for sign in (-1, 1)),
-        *(line.uv + sign * reach * way for sign in (-1, 1) for way in (line.normal, line.tangent)),
-    ):
-        on &= free[_pixel(places[:, 1], free.shape[0]), _pixel(places[:, 0], free.shape[1])]
+    on = face.carries(line)
     if not on.any():
         return []
     straight = straightened((line,), camera)[0]
@@ -142,7 +160,7 @@ def _cells(
     for k in np.unique(number[on]):
         mine = on & (number == k)
         covered = float(step[mine].sum())
-        if covered < LEAST_COVERED * cell_px:
+        if covered < LEAST_COVERED_PX:
             continue
         u, v = straight.uv[mine].mean(axis=0)
         sigma = float(np.median(straight.sigma[mine])) * np.sqrt(straight.correlation_px / covered)
@@ -206,5 +224,7 @@ def _table(rows: Sequence[tuple[_Cell, Array]], cell_px: float, width: int) -> C
     )
 
 
-def _pixel(values: Array, size: int) -> NDArray[np.intp]:
-    return np.asarray(np.rint(values), dtype=np.intp).clip(0, size - 1)
+def _at(flags: NDArray[np.bool_], uv: Array) -> NDArray[np.bool_]:
+    """What the pixels nearest to `uv` (N, 2) hold; those beyond the border what is there."""
+    u, v = (np.rint(uv[:, axis]).astype(np.intp).clip(0, flags.shape[1 - axis] - 1) for axis in range(2))
+    return np.asarray(flags[v, u], dtype=np.bool_)

@@ -82,15 +82,21 @@ class Datum:
         return self.height_mm > WEAK_MM
 
 
-def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
+def note_on_datum(datum: Datum, fan_relief_mm: float | None) -> Message:
     """Make a note on how well the scale of a scan is fixed; where it is weak, with what is missing.
 
-    `fan_relief_mm` is the relief that the fan's own points show (`relief_mm`), whether sweeps cross them or not.
+    `fan_relief_mm` is the relief that the fan's own points show (`relief_mm`), whether sweeps cross them or not; None:
+    there is no fan, and known planes fix the scale.
     """
     percent = 100 * datum.scale
     if not datum.weak and datum.scale <= UNKNOWN:
-        return note_of("scan.scale_fixed", percent=percent)
-    if fan_relief_mm < LEAST_RELIEF_MM:
+        return note_of("scan.scale_fixed" if fan_relief_mm is not None else "scan.scale_by_planes", percent=percent)
+    if fan_relief_mm is None:
+        missing = Message(
+            "scan.missing_boards",
+            "Let more sweeps cross both boards and the part between them, and turn the boards against each other",
+        )
+    elif fan_relief_mm < LEAST_RELIEF_MM:
         missing = Message(
             "scan.missing_relief",
             "The fan meets no relief: let it cross part and table. A block laid beside the part gives height, too, but "

@@ -27,6 +27,7 @@ from core.scan.features.extraction import ScanFeatures
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Causes, cause_first
 from core.scan.known_planes.plane_deviations import followed_by_planes, own_deviations
+from core.scan.known_planes.points_on_planes import note_on_planes_alone
 from core.scan.method import Method, ReconstructOptions
 from core.scan.plane_check import PlaneCheck, check_by_planes
 from core.scan.results import ScanResult
@@ -126,6 +127,8 @@ def solved_scan(
         notes.extend(note_of("scan.board_not_met", board=one.name) for one in planes if one.name not in met)
         planes = tuple(one for one in planes if one.name in met)
         used = replace(calibration, planes=planes)
+        if not calibration.fan.fan.lines:
+            notes.append(note_on_planes_alone(found[1].planes))
         if not planes or not calibration.fan.fan.lines:
             return Solved(*found, used, notes=tuple(notes))
         check = _check(found[1], used)
