@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import cast
+from typing import cast, get_args
 
 from core.cli import output
 from core.cli.language import tr
 from core.cli.options import one_of
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
-from core.files.recording.rig import read_rig, require_tables
+from core.files.recording.rig import KnownPlaneTarget, known_planes_to_toml, read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
 from core.pipeline.steps.prints import write_quick_card
+from core.report.corner_sheet import CornerKind, corner_sheets, corner_targets
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
 from core.report.wording import target_in_words
+
+CORNER = "corner"
+"""The kind of target that is two boards."""
+CORNER_KINDS = get_args(CornerKind)
+_PRINT_TO_SIZE = Message(
+    "target.print_to_size",
+    "print at 100 %, without fitting to the page, then measure both rulers: each must be {ruler_mm:.1f} mm long",
+    ruler_mm=RULER_MM,
+)
 
 
 def target_of_words(
@@ -52,6 +63,29 @@ def target_of_words(
         return BlackSquare(size)
     except WrongValue as error:
         raise InputError(error.what, where=kind) from error
+
+
+def write_corner(board: str, paper: str, out: Path) -> str:
+    """Write a PDF with the sheets of a corner's two boards to the file `out`; return what rig.toml states of them."""
+    kind = cast(CornerKind, one_of(board, CORNER_KINDS, "--board"))
+    name = _paper(paper)
+    targets = corner_targets(kind, name)
+    first = next(iter(targets))
+    stated = {
+        one: KnownPlaneTarget(target, print_of=None if one == first else first) for one, target in targets.items()
+    }
+    tables = known_planes_to_toml(stated)
+    write_bytes(out, corner_sheets(targets, name, tables))
+    return tables
+
+
+def show_corner(tables: str, paper: str, out: Path, *, as_json: bool) -> None:
+    """Print where a corner's PDF was written and what to state of it; with `as_json`, as one JSON object."""
+    if as_json:
+        output.print_json({"paper": _paper(paper), "file": str(out), "rig": tables})
+        return
+    output.print_rows([(tr("paper"), _paper(paper)), (tr("written"), str(out))], [_PRINT_TO_SIZE])
+    sys.stdout.write(f"\n{tables}")
 
 
 def target_of_rig(path: Path, which: str) -> Target:
@@ -92,14 +126,7 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
         return
     output.print_rows(
         [(tr("target"), target_in_words(target, output.words())), (tr("paper"), sheet), (tr("written"), str(out))],
-        [
-            Message(
-                "target.print_to_size",
-                "print at 100 %, without fitting to the page, then measure both rulers: each must be {ruler_mm:.1f} mm "
-                "long",
-                ruler_mm=RULER_MM,
-            )
-        ],
+        [_PRINT_TO_SIZE],
     )
 
 

@@ -17,7 +17,7 @@ commands = typer.Typer()
 def target(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
     kind: Annotated[
-        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid or black_square.")
+        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid, black_square or corner.")
     ] = "",
     columns: Annotated[
         int | None,
@@ -38,11 +38,18 @@ def target(
         Path | None, typer.Option("--rig", metavar="FILE", help="Take the target from this rig.toml instead.")
     ] = None,
     which: Annotated[WhichTarget, typer.Option(help="Which of rig.toml's two targets.")] = WhichTarget.camera,
+    board: Annotated[
+        str, typer.Option(metavar="NAME", help="What both boards of a corner show: charuco or rectangle.")
+    ] = "charuco",
     json: Json = False,
 ) -> None:
-    """Write a calibration target as a PDF to scale, to be printed at 100 %."""
+    """Write a calibration target as a PDF to scale, to be printed at 100 %; for a corner, the sheets of two boards."""
     from core.cli import preparing
 
+    if kind == preparing.CORNER and rig is None:
+        tables = preparing.write_corner(board, paper, out)
+        preparing.show_corner(tables, paper, out, as_json=json)
+        return
     preparing.one_choice(kind, rig)
     printed = (
         preparing.target_of_rig(rig, which.value)

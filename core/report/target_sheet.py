@@ -76,19 +76,24 @@ def target_sheet(target: Target, paper: SheetPaper = "A4", *, title: str = "") -
         If the target does not fit the paper, or its dictionary has too few markers.
     """
     prepare_reportlab()
-    art = target_art(target)
     layout = sheet_layout(target, paper)
     stream = io.BytesIO()
     canvas = Canvas(stream, pagesize=(layout.width_mm * mm, layout.height_mm * mm), invariant=1, initialFontName=SANS)
     canvas.setTitle(title or target_in_words(target))
     canvas.setCreator("Trisect")
     canvas.setViewerPreference("PrintScaling", "None")
-    _draw_art(canvas, art, layout)
-    _draw_rulers(canvas)
-    _draw_words(canvas, target, paper, layout, title)
+    draw_target(canvas, target, paper, title=title)
     canvas.showPage()
     canvas.save()
     return stream.getvalue()
+
+
+def draw_target(canvas: Any, target: Target, paper: SheetPaper, *, title: str = "") -> None:
+    """Draw a target on a page of reportlab's `canvas`, with rulers and words; InputError if it does not fit `paper`."""
+    layout = sheet_layout(target, paper)
+    _draw_art(canvas, target_art(target), layout)
+    _draw_rulers(canvas)
+    _draw_words(canvas, target, paper, layout, title)
 
 
 def sheet_layout(target: Target, paper: SheetPaper) -> SheetLayout:
@@ -110,7 +115,7 @@ def sheet_layout(target: Target, paper: SheetPaper) -> SheetLayout:
     larger_paper = Message("target.advice_larger_paper", "print it on {paper}", paper=next_paper)
     smaller = _smaller(target, most, paper)
     both = Message("target.advice_paper_or_size", "{first}, or {second}", first=larger_paper, second=smaller)
-    (width, height), (across, down) = _rooms(paper)
+    (width, height), (across, down) = rooms(paper)
     raise InputError(
         Message(
             "target.too_large_for_paper",
@@ -134,8 +139,8 @@ def _sheets(paper: SheetPaper) -> tuple[tuple[float, float], tuple[float, float]
     return (short, long), (long, short)
 
 
-def _rooms(paper: SheetPaper) -> list[tuple[float, float]]:
-    """Width and height there is for a target, upright and across."""
+def rooms(paper: SheetPaper) -> list[tuple[float, float]]:
+    """List width and height in mm that `paper` has for a target, upright and across."""
     beside, above = 2 * EDGE_MM + SIDE_MM + 2 * CLEAR_MM, 2 * EDGE_MM + FOOT_MM + 2 * CLEAR_MM
     return [(width - beside, height - above) for width, height in _sheets(paper)]
 
@@ -143,7 +148,7 @@ def _rooms(paper: SheetPaper) -> list[tuple[float, float]]:
 def _layout(art: TargetArt, paper: SheetPaper) -> SheetLayout | None:
     """None where the target does not fit; across only where that leaves more white or is the only way."""
     fitting = []
-    for (width, height), (room_x, room_y) in zip(_sheets(paper), _rooms(paper), strict=True):
+    for (width, height), (room_x, room_y) in zip(_sheets(paper), rooms(paper), strict=True):
         spare = min(room_x - art.width_mm, room_y - art.height_mm)
         if spare >= -1e-9:
             left = max((width - art.width_mm) / 2, EDGE_MM + SIDE_MM + CLEAR_MM)
@@ -154,7 +159,7 @@ def _layout(art: TargetArt, paper: SheetPaper) -> SheetLayout | None:
 
 def _largest_length(target: Target, art: TargetArt, paper: SheetPaper) -> float:
     """The square, pitch or side with which the target would fit the paper, in tenths of a mm; 0 for none."""
-    scale = max(min(x / art.width_mm, y / art.height_mm) for x, y in _rooms(paper))
+    scale = max(min(x / art.width_mm, y / art.height_mm) for x, y in rooms(paper))
     return math.floor(10 * scale * _length(target) + 1e-9) / 10
 
 

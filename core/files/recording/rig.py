@@ -858,6 +858,11 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 
 
+def known_planes_to_toml(planes: Mapping[str, KnownPlaneTarget]) -> str:
+    """Make the tables [known_planes.NAME] of rig.toml that state these boards."""
+    return toml_text({"known_planes": {name: _known_plane_table(one) for name, one in planes.items()}})
+
+
 def rig_to_toml(rig: Rig) -> str:
     """Make the text of rig.toml from which :func:`read_rig` reads the same rig."""
     return toml_text(rig_tables(rig))
@@ -881,6 +886,7 @@ def _known_planes(path: Path, within: str, tables: Mapping[str, _KnownPlaneTable
                     field=f"{within}known_planes", value=name, wanted=_A_NAME,
                 ),
                 where=path,
+                todo=Message("advice.rename_plane", "call its pictures so as well"),
             )  # fmt: skip
     planes = {name: _known_plane(path, f"{within}known_planes.{name}", table) for name, table in tables.items()}
     for name, plane in planes.items():
@@ -895,6 +901,7 @@ def _known_planes(path: Path, within: str, tables: Mapping[str, _KnownPlaneTable
                 value=printed,
             ),
             where=path,
+            todo=Message("advice.name_the_print", "name one of these, or leave it out: the print is one of its own"),
         )
     return planes
 

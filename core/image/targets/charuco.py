@@ -52,8 +52,10 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
                 return _view(board, picture, enlarged(corners, factor), ids, factor, name)
         if factor == 1:
             break
-    counted = _counted(dictionary, small) if markers and not board.first_id else None
-    raise _failure(board, markers, name) if counted is None else _other_board(board, counted, name)
+    if not markers:
+        raise _no_marker(board, dictionary, small, name)
+    counted = None if board.first_id else _counted(dictionary, small)
+    raise _few_corners(markers, name) if counted is None else _other_board(board, counted, name)
 
 
 def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
@@ -67,13 +69,14 @@ def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
     dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
     needed, available = board.first_id + board.columns * board.rows // 2, len(dictionary.bytesList)
     if needed > available:
+        values = {"n": needed, "dictionary": board.dictionary_id, "available": available}
         raise InputError(
             Message(
-                "target.few_markers",
-                "the board has markers to number {n}, but {dictionary} only {available}",
-                n=needed,
-                dictionary=board.dictionary_id,
-                available=available,
+                "target.ids_beyond", "the board's markers end at {n}, those of {dictionary} at {available}", **values
+            )
+            if board.first_id
+            else Message(
+                "target.few_markers", "the board has {n} markers, but {dictionary} only {available}", **values
             ),
             where="dictionary",
             todo=Message("target.advice_dictionary", "choose a dictionary with more markers, or fewer squares"),
@@ -93,7 +96,7 @@ def _best_reading(
         )
         layout.setLegacyPattern(old_pattern)
         corners, ids, _, marker_ids = cv2.aruco.CharucoDetector(layout).detectBoard(picture)
-        markers = 0 if marker_ids is None else len(marker_ids)
+        markers = 0 if marker_ids is None else int(np.isin(marker_ids, numbers).sum())
         count = 0 if ids is None else len(ids)
         if count > len(best[1]) or (count == len(best[1]) and markers > best[2]):
             points = np.empty((0, 2)) if count == 0 else np.asarray(corners, dtype=np.float64).reshape(-1, 2)
@@ -182,17 +185,34 @@ def _clear_of_markers(board: Charuco, xy: Array, corners: Array) -> float:
     return float(np.linalg.norm(moved, axis=2).min())
 
 
-def _failure(board: Charuco, markers: int, name: str) -> TargetNotFound:
-    if markers == 0:
+def _no_marker(
+    board: Charuco, dictionary: cv2.aruco.Dictionary, picture: NDArray[np.uint8], name: str
+) -> TargetNotFound:
+    others = cv2.aruco.ArucoDetector(dictionary).detectMarkers(picture)[1]
+    if others is not None and len(others):
         return TargetNotFound(
-            Message("target.no_marker", "no marker of {name} is seen in the picture", name=board.dictionary_id),
-            where=name,
-            todo=Message(
-                "advice.check_dictionary_or_leave_out",
-                "check the {field}, or leave the picture out",
-                field=Field("target.dictionary"),
+            Message(
+                "target.other_markers",
+                "markers {seen} are seen in the picture, none of the board's, {first} to {last}",
+                seen=f"{np.min(others)} to {np.max(others)}",
+                first=board.first_id,
+                last=board.first_id + board.columns * board.rows // 2 - 1,
             ),
+            where=name,
+            todo=Message("advice.check_first_id", "check first_id, or show this board"),
         )
+    return TargetNotFound(
+        Message("target.no_marker", "no marker of {name} is seen in the picture", name=board.dictionary_id),
+        where=name,
+        todo=Message(
+            "advice.check_dictionary_or_leave_out",
+            "check the {field}, or leave the picture out",
+            field=Field("target.dictionary"),
+        ),
+    )
+
+
+def _few_corners(markers: int, name: str) -> TargetNotFound:
     return TargetNotFound(
         Message(
             "target.few_charuco_corners",

@@ -39,7 +39,8 @@ def dark_squares(picture: NDArray[np.uint8], line: float | None = None) -> DarkS
     """Find dark, convex quadrilaterals with light all round them; stripes of light may cross them.
 
     They are about squares; with a `line`, rectangles of any sides: dark throughout where it is 0, else outlines as wide
-    as `line`, a share of the root of their area.
+    as `line`, a share of the root of their area. Of these, what is seen with the fewest stripes taken out goes first:
+    more of them also take the light between an outline and what is near it.
     """
     cut_off = 0
     found: list[Array] = []
@@ -51,12 +52,17 @@ def dark_squares(picture: NDArray[np.uint8], line: float | None = None) -> DarkS
             cut_off = max(cut_off, cut)
             large = [quad for quad in whole if _sides(quad).min() >= 3 * width]
             found.extend(quad for quad in large if width == 1 or line or _mostly_dark(picture, opened, quad))
-    found.sort(key=lambda quad: -cv2.contourArea(quad.astype(np.float32)))
+    if line is None:
+        found.sort(key=_smallness)
     largest: list[Array] = []
     for quad in found:  # what lies within another is the same square, or what stripes leave of it
         if not any(_holds(other, quad.mean(axis=0)) for other in largest):
             largest.append(quad)
-    return DarkSquares(tuple(largest), cut_off)
+    return DarkSquares(tuple(sorted(largest, key=_smallness)), cut_off)
+
+
+def _smallness(quad: Array) -> float:
+    return -cv2.contourArea(quad.astype(np.float32))
 
 
 def _thresholded(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
