@@ -21,9 +21,11 @@ OURS, GROUP, WINDOW_GROUP = "core.wings", "trisect.wings", "trisect.window_wings
 STUDIES = "studies"
 """Our own wing that reads studies."""
 GEOMETRY = "geometry"
-"""Our own wing that compares the part with other surfaces."""
+"""Our own wing that compares the part with other surfaces, and measures orientation, position and deviation."""
 OUR_COMMANDS: Mapping[str, str] = {"compare": GEOMETRY, "plan": "rig_planning", "study": STUDIES}
 """The commands of our own wings, and which wing each is of: known where the wing's folder is gone, too."""
+OUR_KINDS: Mapping[str, str] = dict.fromkeys(("parallelism", "perpendicularity", "position", "deviation"), GEOMETRY)
+"""The kinds of features of our own wings, likewise."""
 OUR_EXPORTS: Mapping[str, str] = {"compared": GEOMETRY, "compared-csv": GEOMETRY}
 """The kinds of export of our own wings, likewise."""
 
@@ -74,6 +76,9 @@ class Wing:
     exports
         "module:name" of the kinds of files it can export, each a `core.files.results.export_list.BroughtExport`, in a
         module that is light to import; "": none.
+    feature_kinds
+        "module:name" of the kinds of features it measures, each a `core.inspect.plan.feature_kind.FeatureKind`, in a
+        module that is light to import; "": none.
     reads_study
         "module:name" of a function of the path of a study.json that gives the `core.report.content.ReportedStudy`, or
         raises InputError; "": it reads none.
@@ -85,6 +90,7 @@ class Wing:
     sections: tuple[ReportSection, ...] = ()
     findings: str = ""
     exports: str = ""
+    feature_kinds: str = ""
     reads_study: str = ""
 
 

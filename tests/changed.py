@@ -51,6 +51,7 @@ ASKED_FOR_BY = {
     "core.cli.app": ("commands",),
     "core.files.results.export_list": ("exports",),
     "core.findings.table": ("findings",),
+    "core.inspect.plan.kinds": ("feature_kinds",),
     "core.pipeline.steps.brought_sections": ("sections", "reads_study"),
 }
 """Modules that import what a `core.wing.Wing` names, each with the fields it asks for: nothing else rests on that."""

@@ -20,6 +20,7 @@ from core.files.results.export_list import unusable_exports
 from core.findings.brought import OURS as PROGRAM
 from core.findings.brought import failure, note_on_unusable
 from core.findings.table import unusable_findings
+from core.inspect.plan.kinds import unusable_kinds
 from core.messages import Message
 from core.report.facts.fact import Fact
 from core.report.wording import ENGLISH
@@ -201,7 +202,7 @@ def window_wings() -> Found[WindowWing]:
 
 def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, Callable[[], object]]:
     """What each entry of the wings does; a notice tells of those that cannot be made."""
-    for one in (*window_wings().unusable, *unusable_findings(), *unusable_exports()):
+    for one in (*window_wings().unusable, *unusable_findings(), *unusable_exports(), *unusable_kinds()):
         bench.notices.warning(text_of(note_on_unusable(one)))
     if note := note_on_no_wings():
         bench.notices.warning(text_of(note))

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.door import Origin
 from core.errors import InputError
-from core.findings.brought import failure, unusable
+from core.findings.brought import OURS, failure, note_on_unusable, unusable
 from core.findings.proof import SIZE_UNCONFIRMED, Doubt, notes_of
 from core.findings.table import fact_of, note_of
 from core.inspect.characteristic import Characteristic
@@ -23,7 +24,7 @@ from core.inspect.plan.alignment import three_two_one
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.plan.kinds import brought_kinds, kind_of
+from core.inspect.plan.kinds import brought_kinds, kind_of, unusable_kinds
 from core.inspect.plan.plugins import NAME_TAKEN, plugins
 from core.inspect.plan.temperature import at_reference, compared, temperature_of, with_scale
 from core.inspect.result_list import ResultList
@@ -174,11 +175,12 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     except Exception as error:
         if spec.kind not in brought_kinds():
             raise
-        said = failure(brought_kinds()[spec.kind][1], spec.kind, error)
+        said = failure(brought_kinds()[spec.kind][1] or OURS, spec.kind, error)
         return FeatureResult(spec, problem=InputError(said, where=where).message)
     rows = result.characteristics
-    if spec.kind in brought_kinds():
-        rows = tuple(replace(row, notes=(*row.notes, _brought(spec.kind))) for row in rows)
+    if (origin := _origin_of(spec.kind)) is not None:
+        brought = note_of("plugin.measured_by", package=origin.package, version=origin.version)
+        rows = tuple(replace(row, notes=(*row.notes, brought)) for row in rows)
     if scene.temperature is not None:
         rows = tuple(at_reference(row, scene.temperature, plan.k) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
@@ -186,17 +188,18 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     return replace(result, characteristics=rows)
 
 
-def _brought(kind: str) -> Message:
-    """That a result is none of this program's own."""
-    origin = brought_kinds()[kind][1]
-    return note_of("plugin.measured_by", package=origin.package, version=origin.version)
+def _origin_of(kind: str) -> Origin | None:
+    """The package from which a kind comes; None: the program itself."""
+    return brought_kinds()[kind][1] if kind in brought_kinds() else None
 
 
 def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
     """What checks of other packages say of an inspection, and what of such packages does not work."""
     found = plugins()
     said = list(found.problems)
-    said += [unusable(name, found.kinds[name][1], NAME_TAKEN) for name in found.kinds.keys() - brought_kinds()]
+    taken = [name for name, (_, origin) in found.kinds.items() if _origin_of(name) != origin]
+    said += [unusable(name, found.kinds[name][1], NAME_TAKEN) for name in taken]
+    said += [note_on_unusable(one) for one in unusable_kinds()]
     for check in found.checks:
         try:
             said += [plain(f"{check.name} ({check.origin.package} {check.origin.version}): {text}")
@@ -262,8 +265,7 @@ def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, fram
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
     master = plan.master if plan.master is not None and spec.name in plan.master.features else None
     measured = replace(spec, limits=(), nominal_heights=())
-    brought = brought_kinds().get(spec.kind)
-    origin = None if brought is None else brought[1]  # another version of a package measures anew
+    origin = _origin_of(spec.kind)  # another version of a package measures anew
     said = repr(
         (*([] if origin is None else [origin]), of, measured, plan.k, plan.temperature, master, rests_on, frame)
     )

@@ -11,6 +11,7 @@ import pytest
 from core.cli import app
 from core.files.results import export_list
 from core.findings import table
+from core.inspect.plan import kinds
 from core.inspect.plan.plugins import plugins
 from core.wing import wings
 from workbench.wing import window_wings
@@ -21,7 +22,7 @@ Install = Callable[[str, Mapping[str, str], Mapping[str, Mapping[str, str]]], No
 
 def look_again() -> None:
     """Forget which packages were found."""
-    for kept in (wings, window_wings, plugins, app._commands, table._of_wings, export_list._of_wings):
+    for kept in (wings, window_wings, plugins, app._commands, table._of_wings, export_list._of_wings, kinds._of_wings):
         kept.cache_clear()
 
 

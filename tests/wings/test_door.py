@@ -10,8 +10,10 @@ from pypdf import PdfReader
 from core.door import WITHOUT, by_folders
 from core.files.results.export_list import exports
 from core.files.results.ply import read_cloud
+from core.findings.brought import note_on_unusable
 from core.findings.table import FINDINGS as HOUSE
 from core.findings.table import all_findings, is_grave, note_of
+from core.inspect.plan.kinds import every_kind, unusable_kinds
 from core.pipeline.steps.report_step import draw_report, results_content
 from core.wing import OUR_COMMANDS, wings
 from tests.simulated import trisect
@@ -190,6 +192,42 @@ def test_facts_of_a_wing_stand_below_the_results_and_in_the_workbook(install, me
     trisect("export", measured, "--format", "xlsx", "--to", tmp_path)
     rows = [[cell.value for cell in row] for row in load_workbook(tmp_path / "result.xlsx")["facts"].iter_rows()]
     assert any({"count", "points counted", points} <= {*row} for row in rows)
+
+
+KINDS = """
+from core.inspect.plan.feature_kind import FeatureKind
+from core.wing import Wing
+
+MINE = FeatureKind("mine", "lab_kinds:measure", "Mine", "Mine", "mdi6.cube-outline")
+ROWS = (MINE,)
+NONE = (MINE, 7)
+TWICE = (MINE, MINE)
+TAKEN = (FeatureKind("plane", "lab_kinds:measure", "Ours", "Ours", "mdi6.cube-outline"), MINE)
+WING = Wing("kinds", feature_kinds="lab_kinds:{rows}")
+
+def measure(spec, scene):
+    raise ZeroDivisionError("by zero")
+"""
+
+
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        ("ROWS", ""),
+        ("NONE", "one of its kinds of features is no FeatureKind"),
+        ("TWICE", "the name of its kind of feature mine is taken"),
+        ("TAKEN", "the name of its kind of feature plane is taken"),
+        ("NOWHERE", "AttributeError: module 'lab_kinds' has no attribute 'NOWHERE'"),
+    ],
+)
+def test_kinds_of_features_that_cannot_be_used_are_told_and_those_of_the_house_stay(install, rows, why):
+    before = every_kind()
+    points = {"trisect.wings": {"kinds": "lab_kinds:WING"}}
+    install("lab-kinds", {"lab_kinds": KINDS.replace("{rows}", rows)}, points)
+    told = f"kinds of the package lab-kinds 1.2 cannot be used: {why}." if why else ""
+    assert " ".join(str(note_on_unusable(one)) for one in unusable_kinds()) == told
+    assert every_kind()[: len(before)] == before
+    assert [kind.name for kind in every_kind()[len(before) :]] == ([] if rows == "NOWHERE" else ["mine"])
 
 
 def test_a_wing_is_left_out_by_its_name(install, monkeypatch):

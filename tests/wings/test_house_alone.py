@@ -75,6 +75,19 @@ def test_a_comparison_stays_and_the_report_tells_that_it_is_not_printed(without,
     assert said.code == 2 and what in said.err
 
 
+def test_features_of_a_wing_stay_in_the_plan_and_are_told_as_not_measured(without, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    features = ('name = "a"\nkind = "plane"', 'name = "b"\nkind = "plane"')
+    asked = 'name = "c"\nkind = "parallelism"\nof = ["a", "b"]\nlimits.parallelism.upper_mm = 0.1'
+    (out / "plan.toml").write_text("".join(f"[[feature]]\n{one}\n" for one in (*features, asked)))
+    without("geometry")
+    said = trisect("inspect", out, "--plan", out / "plan.toml")
+    what = "parallelism is of the wing geometry, which is not there; take it out of TRISECT_WITHOUT_WINGS."
+    assert said.code == 1 and f"feature c: {what}" in said.out
+    content = results_content(out)
+    assert [row.name for row in content.inspected] == ["a flatness", "b flatness"] and content.unmeasured
+
+
 def test_without_any_wing_a_set_is_measured_to_the_same_bytes(without, simulated, measured, tmp_path):
     without(*OURS)
     assert set(whole_command()[0].commands) == set(get_command(app).commands)

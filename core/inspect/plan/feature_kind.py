@@ -132,6 +132,8 @@ class FeatureKind:
         Whether it is compared with a nominal surface, for which a file is asked when it is added.
     plotted
         Whether it has a plot of its own.
+    missing
+        Whether the wing it is of is not there.
     """
 
     name: str
@@ -150,6 +152,7 @@ class FeatureKind:
     fields: tuple[FormField, ...] = ()
     nominal_file: bool = False
     plotted: bool = False
+    missing: bool = False
 
     @property
     def measure(self) -> Callable[..., Any]:

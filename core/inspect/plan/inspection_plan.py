@@ -140,6 +140,8 @@ def _check(spec: FeatureSpec, plan: InspectionPlan) -> None:
                 todo=Message("feature.advice_name_of_plan", "name one of the plan"),
             )
     kind = kind_of(spec)
+    if kind.missing:  # what it needs only its wing knows
+        return
     wanted = kind.made_of
     if len(spec.of) != wanted or len(set(spec.of)) != wanted:
         raise InputError(

@@ -1,18 +1,21 @@
-"""The kinds of features there are. A new kind is an entry here, its fit in `core.inspect.features`, and its test."""
+"""The kinds of features there are. A new kind is an entry here, its fit in `core.inspect.features`, and its test.
+
+Wings and other packages bring kinds of their own.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TypeGuard
 
+from core.door import Brought, Origin
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.feature_kind import ChoiceField, ElementKind, FeatureKind, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
-from core.messages import label
-
-if TYPE_CHECKING:
-    from core.door import Origin
+from core.messages import Message, label
+from core.wing import OUR_KINDS, rows_of_wings
 
 MOST_FACES = 8
 """Plane faces found by their number, and levels of steps: `core.inspect.fit.plane_search` looks for as many."""
@@ -49,31 +52,13 @@ _SECTION = (
         "mm", 0.01, WIDEST_MM, 2, 0.1,
     ),
 )  # fmt: skip
-_ALIGNED = (
-    ("best fit", label("best fit")),
-    ("frame", label("part coordinates")),
-    ("as measured", label("as measured")),
-)
-_DEVIATION = (
-    TextField("nominal", label("Nominal surface"), label("STEP, or STL in mm, in the project's folder or elsewhere.")),
-    ChoiceField("align", label("Aligned by"), label("How the nominal surface is laid on the scan."), _ALIGNED),
-    NumberField(
-        "tolerance_mm", label("Colours up to ±"), label("Marks + ++ +++ are its quarters, ! lies beyond."),
-        "mm", 0.0001, WIDEST_MM, 4, 0.01,
-    ),
-    NumberField(
-        "reach_mm", label("Part within"), label("Points farther off belong to a table or a clamp."),
-        "mm", 0.01, WIDEST_MM, 2, 0.5,
-    ),
-)  # fmt: skip
-
 _DIAMETER = ResultKind(label("diameter"), expands=True)
 _FORM = ResultKind(label("form"), one_sided=True)
 _HEIGHT = ResultKind(label("height"), expands=True)
 _DISTANCE = ResultKind(label("distance"), expands=True)
 
-_TO_A_DATUM = (label("Feature"), label("Datum"))
-_WITH_DIRECTION: tuple[ElementKind, ...] = ("plane", "axis")
+WITH_DIRECTION: tuple[ElementKind, ...] = ("plane", "axis")
+"""What an angle can be measured from."""
 
 KINDS: tuple[FeatureKind, ...] = (
     FeatureKind(
@@ -165,49 +150,7 @@ KINDS: tuple[FeatureKind, ...] = (
         "mdi6.angle-acute",
         results=(ResultKind(label("angle"), "angle"),),
         made_of=2,
-        made_from=_WITH_DIRECTION,
-    ),
-    FeatureKind(
-        "parallelism",
-        "core.inspect.features.orientation:measure_parallelism",
-        label("Parallelism to a datum"),
-        label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
-        "mdi6.equal",
-        results=(ResultKind(label("parallelism"), one_sided=True, symbol="parallelism"),),
-        made_of=2,
-        part_titles=_TO_A_DATUM,
-        made_from=_WITH_DIRECTION,
-    ),
-    FeatureKind(
-        "perpendicularity",
-        "core.inspect.features.orientation:measure_perpendicularity",
-        label("Perpendicularity to a datum"),
-        label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
-        "mdi6.angle-right",
-        results=(ResultKind(label("perpendicularity"), one_sided=True, symbol="perpendicularity"),),
-        made_of=2,
-        part_titles=_TO_A_DATUM,
-        made_from=_WITH_DIRECTION,
-    ),
-    FeatureKind(
-        "position",
-        "core.inspect.features.position:measure_position",
-        label("Position to the datums"),
-        label("Of a cylinder or a sphere that is in the list, to the datums of the part's coordinates (ISO 1101)"),
-        "mdi6.target",
-        results=(ResultKind(label("position"), one_sided=True, symbol="position"),),
-        made_of=1,
-        part_titles=(label("Feature"),),
-        made_from=("axis", "point"),
-        settings="position",
-        fields=(
-            TextField(
-                "at_mm",
-                label("True place in mm"),
-                label("Where its axis or centre should be: x; y; z in part coordinates."),
-                "10; 20; 0",
-            ),
-        ),
+        made_from=WITH_DIRECTION,
     ),
     FeatureKind(
         "section",
@@ -221,22 +164,6 @@ KINDS: tuple[FeatureKind, ...] = (
         fields=_SECTION,
         plotted=True,
     ),
-    FeatureKind(
-        "deviation",
-        "core.inspect.features.deviation:measure_deviation",
-        label("Deviation from a nominal surface"),
-        label("How far the surface lies off a nominal one from a STEP or STL file"),
-        "mdi6.compare",
-        results=(
-            ResultKind(label("profile"), one_sided=True, symbol="profile of a surface"),
-            ResultKind(label("mean")),
-        ),
-        automatic="all points",
-        settings="deviation",
-        fields=_DEVIATION,
-        nominal_file=True,
-        plotted=True,
-    ),
 )
 
 
@@ -246,22 +173,66 @@ def kind_of(spec: FeatureSpec) -> FeatureKind:
 
 
 def kind_named(name: str) -> FeatureKind:
-    """Find the feature kind called `name`, built in or from another package; KeyError if there is none."""
+    """Find the feature kind called `name`, built in or brought; KeyError if there is none.
+
+    One of our own wing that is not there is a `missing` kind.
+    """
     own = {kind.name: kind for kind in KINDS}
-    return own[name] if name in own else brought_kinds()[name][0]
+    if name in own:
+        return own[name]
+    if name in OUR_KINDS and name not in brought_kinds():
+        return _missing(name)
+    return brought_kinds()[name][0]
 
 
 def every_kind() -> tuple[FeatureKind, ...]:
-    """Return all feature kinds: the built-in ones, then those from other packages."""
+    """Return all feature kinds: the built-in ones, then those from wings and other packages."""
     return (*KINDS, *(kind for kind, _ in brought_kinds().values()))
 
 
-def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
-    """Find the feature kinds from other packages with their origin, by name, except names of built-in kinds."""
+def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin | None]]:
+    """Find the feature kinds from wings and other packages, by name, except names that are taken.
+
+    With each is the package it comes from; None: the program itself.
+    """
     from core.inspect.plan.plugins import plugins  # looking for packages takes time that most never need
 
-    own = {kind.name for kind in KINDS}
-    return {name: brought for name, brought in plugins().kinds.items() if name not in own}
+    taken = {*(kind.name for kind in KINDS), *OUR_KINDS, *_of_wings()[0]}
+    others = {name: brought for name, brought in plugins().kinds.items() if name not in taken}
+    return {**_of_wings()[0], **others}
+
+
+def unusable_kinds() -> tuple[Brought, ...]:
+    """What wings name as kinds of features and cannot be used."""
+    return _of_wings()[1]
+
+
+@cache
+def _of_wings() -> tuple[Mapping[str, tuple[FeatureKind, Origin | None]], tuple[Brought, ...]]:
+    taken = {kind.name for kind in KINDS}
+    return rows_of_wings(lambda wing: wing.feature_kinds, _is_kind, lambda kind: kind.name, taken, _why_unusable)
+
+
+def _is_kind(row: object) -> TypeGuard[FeatureKind]:
+    return isinstance(row, FeatureKind)
+
+
+def _why_unusable(name: str) -> Message:
+    if not name:
+        return Message("plugin.why_no_feature_kind", "one of its kinds of features is no FeatureKind")
+    return Message("plugin.why_kind_taken", "the name of its kind of feature {name} is taken", name=name)
+
+
+def _missing(name: str) -> FeatureKind:
+    """The kind of a wing that is not there: plans keep its features, and none is measured."""
+    return FeatureKind(
+        name,
+        "core.inspect.features.missing:measure_missing",
+        label("Feature of a wing that is not there"),
+        label("It stays in the plan as it is, and is not measured"),
+        "mdi6.puzzle-remove-outline",
+        missing=True,
+    )
 
 
 def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:

@@ -1,1 +1,1 @@
-"""Geometry: the measured part against another surface."""
+"""Geometry: the measured part against another surface, and against datums."""

@@ -13,4 +13,5 @@ WING = Wing(
         ),
     ),
     exports="core.wings.geometry.exports:ROWS",
+    feature_kinds="core.wings.geometry.kinds:KINDS",
 )

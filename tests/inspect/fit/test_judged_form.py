@@ -5,21 +5,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 
 from core.findings.proof import ScanFacts
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.fit.judged_form import FACE, LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.gauge import measure_gauge
-from core.inspect.plan.feature_spec import Cut, Deviation, FeatureSpec, InSphere, Polygon, Section
+from core.inspect.plan.feature_spec import Cut, FeatureSpec, InSphere, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.scan.surface.cloud import Cloud
-from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import CENTRE, FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels
-from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
+from tests.inspect.shape_scan import BALL, ShapeScan
 from tests.scan_facts import KNOWN, NOTHING_WRONG
 
 SEEDS = (0, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in range(1, 10)))
@@ -45,14 +43,6 @@ SPOTS = (
     FeatureSpec("aside", "point", (InSphere((*(TABLE_MM * NORMAL + 60.0 * axes()[0]).tolist(),), 12.0),)),
 )
 SPOT_PLAN = InspectionPlan((*SPOTS, FeatureSpec("apart", "distance", of=("spot", "aside"))))
-
-
-def map_of_ball(too_large_mm: float = 0.0) -> tuple[InspectionPlan, dict[str, Triangles]]:
-    """A comparison with a ball that is smaller than the one scanned by so much in radius, and that ball."""
-    compared = Deviation("ball.stl", "as measured", 0.1, 1.0)
-    mesh = trimesh.creation.icosphere(subdivisions=5, radius=BALL_RADIUS - too_large_mm)
-    nominals = {"ball.stl": Triangles(np.asarray(mesh.triangles) + BALL)}
-    return InspectionPlan((FeatureSpec("map", "deviation", (AROUND_BALL,), deviation=compared),)), nominals
 
 
 def lifted(cloud: Cloud, height: np.ndarray) -> Cloud:
@@ -180,16 +170,6 @@ def dented(seed: int, depth_mm: float) -> Cloud:
     return lifted(cloud, np.where(SHAPES.on == 0, -depth_mm * np.exp(-0.5 * (apart / 4.0) ** 2), 0.0))
 
 
-@pytest.mark.parametrize(("depth_mm", "word"), [(0.3, "too low"), (-0.3, "too high")])
-def test_a_dent_stands_out_of_a_deviation_map(depth_mm: float, word: str) -> None:
-    plan, nominals = map_of_ball(0.05)
-    (note,) = notes(evaluate(plan, dented(3, depth_mm), errors=SHAPES.errors, nominals=nominals), "map")
-    assert note.code == "form.off_nominal"
-    assert "upper left" in str(note)
-    assert word in str(note)
-    assert 0.03 < note.values["mm"] < 0.3
-
-
 @pytest.mark.parametrize(("middle_mm", "where"), [(0.15, "above"), (-0.15, "below")])
 def test_a_bowed_stretch_of_a_section_is_told(middle_mm: float, where: str) -> None:
     (note,) = notes(evaluate(CUT_PLAN, lifted(block(1), bow(middle_mm)), errors=BLOCK_ERRORS), "cut")
@@ -216,16 +196,14 @@ def test_what_is_wrong_about_a_point_is_told_with_what_is_derived_from_it() -> N
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_ideal_sections_points_and_maps_are_not_accused(seed: int) -> None:
+def test_ideal_sections_and_points_are_not_accused(seed: int) -> None:
     cloud, shapes = block(seed, outliers=0.02), SHAPES.measure(np.random.default_rng(seed))
-    plan, nominals = map_of_ball(0.05)
     found = [
         (evaluate(CUT_PLAN, cloud, errors=BLOCK_ERRORS), "cut"),
         (evaluate(SPOT_PLAN, cloud, errors=BLOCK_ERRORS), "apart"),
         (evaluate(ARC_PLAN, shapes, errors=SHAPES.errors), "arc"),
-        (evaluate(plan, shapes, errors=SHAPES.errors, nominals=nominals), "map"),
     ]
-    assert [notes(inspection, name) for inspection, name in found] == [[], [], [], []]
+    assert [notes(inspection, name) for inspection, name in found] == [[], [], []]
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (1, 2, 3))])

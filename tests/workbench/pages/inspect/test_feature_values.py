@@ -37,14 +37,6 @@ def test_without_two_elements_there_is_no_distance():
     assert "made of two other features" in fields.why_not("distance", InspectionPlan(PLANES.features[:1]))
 
 
-def test_a_true_place_has_three_coordinates():
-    placed = fields.with_value(made("position"), "at_mm", "10; 20,5; 0")
-    assert placed.of == ("hole",) and placed.position.at_mm == (10.0, 20.5, 0.0)
-    with pytest.raises(ValueError, match="Write x, y and z in mm"):
-        fields.with_value(placed, "at_mm", "10; 20")
-    assert "made of another feature" in fields.why_not("position", PLANES)
-
-
 def test_the_angle_is_shown_in_degrees_and_kept_in_radians():
     values = {"limits nominal angle": 90.0, "limits lower angle": -0.5, "limits upper angle": 0.5}
     spec = fields.with_limits(made("angle"), "angle", values)

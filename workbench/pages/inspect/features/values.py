@@ -88,7 +88,7 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
     """Return all settings of a feature as the fields of its form."""
     values: dict[str, Any] = {"name": spec.name}
     values |= {f"of {place}": name for place, name in enumerate(spec.of)}
-    if not kind_of(spec).made_of:
+    if not kind_of(spec).made_of and not kind_of(spec).missing:
         values["parts"] = None if len(spec.regions) == 1 else len(spec.regions)
     for place, region in enumerate(own_regions(spec)):
         values[f"source {place}"] = _source(region)
@@ -137,7 +137,7 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
 
 def own_regions(spec: FeatureSpec) -> tuple[Region, ...]:
     """Return the regions that hold a feature's points; () for a feature made of others."""
-    return () if kind_of(spec).made_of else spec.regions
+    return () if kind_of(spec).made_of or kind_of(spec).missing else spec.regions
 
 
 def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
@@ -282,7 +282,7 @@ def _holders(spec: FeatureSpec) -> dict[str, str]:
     """The settings it has, by key, and the field of the feature that holds each; "" for the feature itself."""
     kind = kind_of(spec)
     own = {one.key: str(kind.settings) for one in kind.fields}
-    return own if kind.made_of else own | {one.key: "filters" for one in FILTERS}
+    return own if kind.made_of or kind.missing else own | {one.key: "filters" for one in FILTERS}
 
 
 def _with_own(spec: FeatureSpec, holder: str, key: str, value: Any) -> FeatureSpec:

@@ -1,0 +1,1 @@
+"""Orientation and position to datums, and deviation from a nominal surface."""
