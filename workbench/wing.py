@@ -26,7 +26,7 @@ from core.report.facts.fact import Fact
 from core.report.wording import ENGLISH
 from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.notices import Notices
 
 if TYPE_CHECKING:
@@ -284,7 +284,7 @@ class LayerOfWing:
     @property
     def why_not(self) -> str:
         """Reason why the surface cannot be coloured by it; "" if it can."""
-        return self._guard.tried(lambda: self.layer.why_not, text_of(_NO_LAYER))
+        return self._guard.tried(lambda: self.layer.why_not, tr("The wing that brings it has failed: see the notices."))
 
     @property
     def beside(self) -> NDArray[np.float32] | None:
