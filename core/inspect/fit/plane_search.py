@@ -134,7 +134,7 @@ def largest_plane(
     order = np.argsort(-votes, kind="stable")
     for first in range(0, MOST_TRIED, FINALISTS):
         finalists = [
-            _refined(oriented, area, *candidates[index], tolerance) for index in order[first : first + FINALISTS]
+            _refined(oriented, area, candidates[index], tolerance) for index in order[first : first + FINALISTS]
         ]
         slanting = False
         for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
@@ -152,9 +152,10 @@ def largest_plane(
 
 
 def _refined(
-    oriented: _OrientedPoints, area: Array, normal: Array, distance: float, tolerance: float
+    oriented: _OrientedPoints, area: Array, hypothesis: tuple[Array, float], tolerance: float
 ) -> tuple[float, Array, float]:
     """Vote, normal and distance of a hypothesis fitted to the points near it, again and again."""
+    normal, distance = hypothesis
     for _ in range(4):
         near = oriented.near(normal, distance, tolerance)
         if near.sum() < 6:

@@ -3,11 +3,12 @@
 import platform
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
 
-from core.acquire.source import SourceChoice
+from core.acquire.source import FrameSource, SourceChoice
 from core.files.pictures import write_picture
 from core.files.recording.recording_log import LoggedFrame, RecordingLog
 from core.files.recording.recording_set import open_set
@@ -37,7 +38,7 @@ def test_the_log_of_a_recording_names_the_simulated_rig(folder: Path, kind: str,
     class Source:
         name = "Camera"
 
-    camera = camera_name(SourceChoice(kind, "0"), Source())
+    camera = camera_name(SourceChoice(kind, "0"), cast(FrameSource, Source()))
     assert platform.node() in camera
     log = RecordingLog(folder / "scan")
     log.add(LoggedFrame("a.png", 0, 0.0, 0, datetime.now(UTC), camera))
