@@ -269,4 +269,8 @@ def write_export(kind: str, results: Results, path: Path, progress: Progress = s
     except (InputError, Cancelled):
         raise
     except Exception as error:
-        raise InputError(failure(origin or OURS, name, error), where=path) from error
+        raise InputError(
+            failure(origin or OURS, name, error),
+            where=path,
+            todo=Message("advice.who_made_it", "bring it up to date, or ask who made it"),
+        ) from error
