@@ -117,6 +117,9 @@ class EdgeSearch:
                 for k in range(4)
             ]
             seen = [profile for _, _, profile in across]
+            for k, profile in enumerate(seen):
+                if not profile.valid.any():
+                    raise TargetNotFound(self.lost[_side(quad, k)], where=self.name, todo=SHOW_EDGE)
             undisturbed = [_undisturbed([profile])[0] for profile in seen] if thin else _undisturbed(seen)
             edges = [_edge(flat, *each, use) for each, use in zip(across, undisturbed, strict=True)]
             for k, edge in enumerate(edges):
@@ -128,8 +131,12 @@ class EdgeSearch:
         blur = [_blur(profile, _light(spline, *each)) for each, profile in zip(across, seen, strict=True)]
         return Edges(quad, lines, np.array(blur), clipped, unit)
 
+    def to_flat(self, uv: Array) -> Array:
+        """Convert image points (N, 2) to coordinates (N, 2) in which straight edges are straight, px at the middle."""
+        return _StraightEdges(self.camera).of(uv)
+
     def to_pixels(self, flat: Array) -> Array:
-        """Image points (N, 2) of flat coordinates (N, 2)."""
+        """Convert flat coordinates (N, 2) to image points (N, 2)."""
         return _StraightEdges(self.camera).to_pixels(flat)
 
 

@@ -74,7 +74,9 @@ def detect_rectangle(
     outer = _from_corner(outer, outer.quad[_first(rectangle, outer, camera, name)])
     if not rectangle.line_mm:
         return _view(rectangle, [outer], name)
-    inner = map_by(_homography(rectangle, outer.quad), rectangle.points[4:, :2])
+    seen = homography_of(rectangle.points[:4, :2], search.to_flat(outer.quad))
+    assert seen is not None, "four corners of a quadrilateral that has an area"
+    inner = search.to_pixels(map_by(seen, rectangle.points[4:, :2]))
     line_px = _line_px(outer.quad, inner)
     if line_px < THINNEST_PX:
         raise TargetNotFound(
@@ -89,14 +91,15 @@ def detect_rectangle(
         search.follow(quad, (near, near), inwards=quad is inner, unit=unit, thin=True) for quad in (outer.quad, inner)
     ]
     view = _view(rectangle, rims, name)
-    _check_line(view)
+    _check_line(view, search)
     return view
 
 
-def _check_line(view: TargetView) -> None:
+def _check_line(view: TargetView, search: EdgeSearch) -> None:
     """Raise TargetNotFound unless all corners fit one rectangle outlined as stated, seen in perspective."""
-    homography = homography_of(view.points[:, :2], view.uv)
-    off = np.inf if homography is None else np.abs(map_by(homography, view.points[:, :2]) - view.uv)
+    seen = search.to_flat(view.uv)
+    homography = homography_of(view.points[:, :2], seen)
+    off = np.inf if homography is None else np.abs(map_by(homography, view.points[:, :2]) - seen)
     if not np.all(off < MISFIT_PX + 4 * view.sigma[:, None]):
         raise TargetNotFound(
             Message(
@@ -115,7 +118,8 @@ def _outer_edges(rectangle: Rectangle, search: EdgeSearch) -> Edges:
     given = rectangle.corners_px
     quad = _only(rectangle, seen, search.name) if given is None else _nearest(np.array(given), seen, factor)
     if rectangle.line_mm:
-        at_first = replace(search, picture=small, camera=None)
+        camera = None if search.camera is None else search.camera.scaled(1 / factor)
+        at_first = replace(search, picture=small, camera=camera)
         unit, near = _sampling(THINNER * line * np.sqrt(_area(quad)))
         quad = at_first.follow(quad, (max(near, ROUGH_PX),), unit=unit, thin=True).quad
         quad = enlarged(at_first.follow(quad, (near, near), unit=unit, thin=True).quad, factor)
@@ -155,12 +159,6 @@ def _area(quad: Array) -> float:
 
 def _diagonal(quad: Array) -> float:
     return float(np.linalg.norm(quad[0] - quad[2]))
-
-
-def _homography(rectangle: Rectangle, corners: Array) -> Array:
-    homography = homography_of(rectangle.points[:4, :2], corners)
-    assert homography is not None, "four corners of a quadrilateral that has an area"
-    return homography
 
 
 def _first(rectangle: Rectangle, outer: Edges, camera: Camera | None, name: str) -> int:
