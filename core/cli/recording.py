@@ -54,8 +54,8 @@ STATUS_S = 5.0
 
 _TABLES = {
     "camera": ("camera_target",),
-    "planes": ("plane_target", "laser_fan"),
-    "check": ("plane_target", "laser_fan"),
+    "planes": ("laser_fan", "plane_target"),
+    "check": ("laser_fan", "plane_target"),
     "scan": (),
 }
 """Tables of rig.toml that a part needs."""

@@ -47,7 +47,7 @@ def test_a_corner_without_fan_is_a_set_of_its_own(corner):
     assert [plane.name for plane in found.known_planes] == ["far", "near"]
     assert {plane.print_of for plane in found.known_planes} == {"near"}
     assert not found.rig.has_fan and found.planes == () and truth.fan is None
-    with pytest.raises(InputError, match="plane_target is missing"):
+    with pytest.raises(InputError, match="which states that the rig has no fan"):
         require_planes(found)
     normals = [truth.known_planes[name].rotation[:, 2] for name in ("near", "far")]
     assert np.degrees(np.arccos(normals[0] @ normals[1])) == pytest.approx(90.0)

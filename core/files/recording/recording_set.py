@@ -296,7 +296,7 @@ def require_camera(recording_set: RecordingSet) -> None:
 
 def require_planes(recording_set: RecordingSet) -> None:
     """Raise InputError unless the set has pictures of the plane target with the fan on."""
-    require_tables(recording_set.rig, recording_set.rig_file, "plane_target", "laser_fan")
+    require_tables(recording_set.rig, recording_set.rig_file, "laser_fan", "plane_target")
     if not recording_set.planes:
         raise _nothing_in(
             recording_set,
