@@ -33,7 +33,7 @@ def calibrated(tiny_set, tmp_path_factory):
     [
         ("camera", ["camera_target"], []),
         ("planes", ["plane_target", "laser_fan"], ["camera.json"]),
-        ("scan", [], ["camera.json", "planes.json"]),
+        ("scan", ["laser_fan"], ["camera.json", "planes.json"]),
     ],
 )
 def test_a_step_runs_with_its_own_tables_only(tiny_set, calibrated, tmp_path, step, tables, needed):
@@ -58,7 +58,7 @@ NO_FAN = "it has no table [laser_fan], which states that the rig has no fan"
         ("planes", ["camera_target", "plane_target"], NO_FAN),
         ("check", ["camera_target", "plane_target"], NO_FAN),
         ("profile", ["camera_target", "plane_target"], NO_FAN),
-        ("run", ["camera_target", "plane_target"], NO_FAN),
+        ("run", ["camera_target", "plane_target"], "the rig has no fan, as it has no table [laser_fan]"),
         ("run", ["camera_target", "laser_fan"], "plane_target is missing"),
     ],
 )

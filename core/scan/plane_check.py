@@ -66,9 +66,9 @@ class PlaneOff:
     others_p: float = 1.0
 
     @property
-    def sizes(self) -> dict[str, float]:
-        """Sizes of the disagreement, as notes have them."""
-        return {"mm": abs(self.mm), "degrees": float(np.degrees(self.turn)), "times": self.times}
+    def degrees(self) -> float:
+        """The angle in degrees."""
+        return float(np.degrees(self.turn))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -112,9 +112,17 @@ class PlaneCheck:
             return note_of("scan.checked_by_planes", boards=names, mm=max(abs(one.mm) for one in self.planes), p=self.p)
         alone = self.alone_off
         if alone is not None:
-            return note_of("scan.board_off", board=alone.name, **alone.sizes)
-        cause = _RIG if len(self.planes) > 1 else _EITHER
-        return note_of("scan.planes_disagree", boards=names, cause=cause, **worst.sizes)
+            return note_of(
+                "scan.board_off", board=alone.name, mm=abs(alone.mm), degrees=alone.degrees, times=alone.times
+            )
+        return note_of(
+            "scan.planes_disagree",
+            boards=names,
+            mm=abs(worst.mm),
+            degrees=worst.degrees,
+            times=worst.times,
+            cause=_RIG if len(self.planes) > 1 else _EITHER,
+        )
 
 
 def check_by_planes(scan: ScanResult, camera: Camera, control: Control, deviations: Sequence[Deviation]) -> PlaneCheck:

@@ -82,6 +82,10 @@ LOCATE_BETTER = Message(
     field=Field("laser_fan.lines"),
     command=Command("--sigma-cut MM"),
 )
+ADD_BOARDS = Message(
+    "scan.advice_lay_boards",
+    "let each sweep cross two boards at an angle, with pictures of them in scan/planes, or use a fan",
+)
 
 
 def reconstruct(
@@ -232,10 +236,7 @@ def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: 
             "scan.no_known_plane",
             "there is no fan, and no sweep is seen on a known plane, so nothing says where the hand-held laser was",
         )
-        todo = Message(
-            "scan.advice_lay_boards",
-            "let each sweep cross two boards at an angle, with pictures of them in scan/planes, or use a fan",
-        )
+        todo = ADD_BOARDS
     else:
         what = plural_message(
             "scan.planes_leave_free",

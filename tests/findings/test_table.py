@@ -30,6 +30,7 @@ OF_ONE_RESULT = {"faces_not_spanned", "light_skewed", "master_doubted", "several
 """Facts that take away the proof of one result."""
 OF_THE_DAY = {
     "calibration_lapsed", "calibration_undated", "check_failed", "check_lapsed", "history_unreadable", "never_checked",
+    "planes_disagree",
 }  # fmt: skip
 """Facts of the day of a scan."""
 NOT_KNOWN = {"scan_unknown", "planes_unknown"}

@@ -72,7 +72,11 @@ def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
         values = {"n": needed, "dictionary": board.dictionary_id, "available": available}
         raise InputError(
             Message(
-                "target.ids_beyond", "the board's markers end at {n}, those of {dictionary} at {available}", **values
+                "target.ids_beyond",
+                "the board's markers end at {last}, those of {dictionary} at {highest}",
+                last=needed - 1,
+                dictionary=board.dictionary_id,
+                highest=available - 1,
             )
             if board.first_id
             else Message(
@@ -193,8 +197,9 @@ def _no_marker(
         return TargetNotFound(
             Message(
                 "target.other_markers",
-                "markers {seen} are seen in the picture, none of the board's, {first} to {last}",
-                seen=f"{np.min(others)} to {np.max(others)}",
+                "the picture shows markers from {lowest} to {highest}, none of the board's, {first} to {last}",
+                lowest=int(np.min(others)),
+                highest=int(np.max(others)),
                 first=board.first_id,
                 last=board.first_id + board.columns * board.rows // 2 - 1,
             ),

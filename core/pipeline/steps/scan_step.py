@@ -11,14 +11,14 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan, stored_poses_of
-from core.pipeline.steps.scan.known_planes import see_boards
+from core.pipeline.steps.scan.known_planes import see_boards, states_no_fan
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
 from core.pipeline.steps.scan.results import Measured, scan_file, write_measured
 from core.pipeline.steps.scan.surface import begin_surface
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
-from core.pipeline.steps.workspace import HAS_FAN, Workspace
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 from core.second_process import SecondProcess
@@ -60,12 +60,16 @@ def scan_step(
     """
     settings, recording_set = settings or Options(), work.recording_set
     require_frames(recording_set, settings)
-    calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
-        boards = see_boards(log.pictures, calibration, progress)
-        features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
-        has_fan = {} if recording_set.rig.has_fan else {HAS_FAN: False}
-        log.settings.update({**settings.run_settings("scan"), **log.pictures.laser_channel("scan").settings, **has_fan})
+        boards = see_boards(log.pictures, with_size_by_artefact(work, work.calibration()), progress)
+        features = scan_features(log.pictures, boards.calibration, settings, progress, watch, earlier, seen)
+        log.settings.update(
+            {
+                **settings.run_settings("scan"),
+                **log.pictures.laser_channel("scan").settings,
+                **states_no_fan(recording_set.rig),
+            }
+        )
         solved = solved_scan(
             features, boards.calibration, settings.solving(recording_set.rig.row_time_us), progress, boards.notes
         )
@@ -77,8 +81,14 @@ def scan_step(
             else check
         )
         logged = recording_set.log("scan")
-        scanned = logged.acquisition(recording_set.frames)
-        change_by = partial(since_calibration, recording_set, calibration, checked, scanned, by_planes=solved.checked)
+        change_by = partial(
+            since_calibration,
+            recording_set,
+            calibration,
+            checked,
+            logged.acquisition(recording_set.frames),
+            by_planes=solved.checked,
+        )
         kept = stored_poses_of(work, calibration)
         section, of_the_day = (
             section_since(calibration, kept.stripes, features.fan),
@@ -92,7 +102,6 @@ def scan_step(
         scan = replace(solved.scan, cloud=cloud, notes=notes)
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
-        measured = Measured(scan, mesh)
         file = scan_file(features, scan, judgement, calibration, log.pictures, settings, light, solved.check)
-        write_measured(log, measured, file, progress)
+        write_measured(log, measured := Measured(scan, mesh), file, progress)
     return measured

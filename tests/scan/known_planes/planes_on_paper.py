@@ -52,12 +52,9 @@ class OnPaper:
 
 
 def scan_on_paper(
-    seed, planes=CORNER, *, count=30, noise_px=0.1, sd_mm=0.0, with_fan=False, boards=None, truth=None, crossing_px=0.05
+    seed, planes=CORNER, *, count=30, noise_px=0.1, sd_mm=0.0, with_fan=False, boards=None, crossing_px=0.05
 ):
-    """Sweeps over block and table and over boards, whose light has `noise_px` at every pixel by itself.
-
-    `truth`: planes of the light on the boards where it is not that of the sweeps.
-    """
+    """Sweeps over block and table and over boards, whose light has `noise_px` at every pixel by itself."""
     sheets = sweeps(count, seed)
     boards = boards or [board(plane, k, sd_mm=sd_mm, seed=seed) for k, plane in enumerate(planes)]
     scan = network(sheets, crossing_px, seed, fan_noise_px=0.6 * crossing_px)
@@ -65,7 +62,7 @@ def scan_on_paper(
     rng = np.random.default_rng([seed, 77])
     frames = tuple(
         FrameFeatures(index, f"frame{index:04d}", light_on(pi, planes, boards, noise_px, rng))
-        for index, pi in enumerate(sheets if truth is None else truth)
+        for index, pi in enumerate(sheets)
     )
     crossings = replace(scan.table.select(keep), half_length_px=40.0)
     features = ScanFeatures(CAMERA.image_size, (), frames, crossings, STRIPE, STRIPE)

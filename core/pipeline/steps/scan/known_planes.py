@@ -11,11 +11,14 @@ from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import PlanePictures
+from core.files.recording.rig import Rig
 from core.messages import Message
 from core.model import Camera
-from core.pipeline.steps.workspace import Calibration, check_size
+from core.pipeline.steps.workspace import HAS_FAN, Calibration, check_size
 from core.progress import Progress, steps
+from core.scan.known_planes.known_plane import KnownPlane
 from core.scan.known_planes.seen_plane import BoardOf, SoughtPlane, seek_plane
+from core.scan.reconstruct import ADD_BOARDS
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -32,17 +35,39 @@ def see_boards(pictures: PictureReader, calibration: Calibration, progress: Prog
     Raises
     ------
     InputError
-        If a picture cannot be read, or has another size than the camera's.
+        If a picture cannot be read, or has another size than the camera's, or there is neither a fan nor a known plane.
     """
-    boards = pictures.recording_set.known_planes
+    boards, has_fan = pictures.recording_set.known_planes, pictures.recording_set.rig.has_fan
+    if not boards and has_fan:
+        return BoardsSeen(calibration)
     camera = calibration.camera.camera
     sought = [_sought(pictures, board, camera) for board in steps(boards, progress, "known planes", len(boards))]
     planes = tuple(one.plane for one in sought if one.plane is not None)
-    if not calibration.fan.fan.lines:
-        calibration = replace(
-            calibration, fan=replace(calibration.fan, scale_assumed=any(plane.scale_assumed for plane in planes))
+    notes = tuple(note for one in sought for note in one.notes)
+    if not has_fan:
+        with told_of_boards(notes):
+            _require_any(planes)
+        assumed = any(plane.scale_assumed for plane in planes)
+        calibration = replace(calibration, fan=replace(calibration.fan, scale_assumed=assumed))
+    return BoardsSeen(replace(calibration, planes=planes), notes)
+
+
+def states_no_fan(rig: Rig) -> dict[str, bool]:
+    """Make the setting of the scan step in run.json that states that a rig has no fan; nothing where it has one."""
+    return {} if rig.has_fan else {HAS_FAN: False}
+
+
+def _require_any(planes: Sequence[KnownPlane]) -> None:
+    """InputError if there is neither a fan nor a known plane."""
+    if not planes:
+        raise InputError(
+            Message(
+                "scan.neither_fan_nor_plane",
+                "the rig has no fan, as it has no table [laser_fan], and there is no known plane that is seen",
+            ),
+            where="scan",
+            todo=ADD_BOARDS,
         )
-    return BoardsSeen(replace(calibration, planes=planes), tuple(note for one in sought for note in one.notes))
 
 
 @contextmanager
