@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 from scipy.special import chdtrc
 
@@ -56,7 +55,8 @@ class PlaneOff:
     times
         How many times larger both are, together, than the standard uncertainties let one expect.
     others_p
-        Probability that chance alone would set the fan as far off the other planes; 1 where there is none.
+        Probability that chance alone would set the fan as far off the other planes, wherever this one is; 1 where there
+        is none.
     """
 
     name: str
@@ -155,21 +155,26 @@ def check_by_planes(scan: ScanResult, camera: Camera, control: Control, deviatio
         replace(
             _off(scan, camera, control, number, free),
             times=float(np.sqrt(_squares(z, expected, _block(number)) / FREEDOMS)),
-            others_p=_others_p(z, expected, _block(number)),
+            others_p=_others_p(z, expected, own[:, _block(number)]),
         )
         for number in range(len(control.planes))
     )
     return PlaneCheck(off, squares, len(z))
 
 
-def _squares(z: Array, covariance: Array, part: slice | NDArray[np.intp]) -> float:
+def _squares(z: Array, covariance: Array, part: slice) -> float:
     """χ² of a part of z."""
     return float(z[part] @ np.linalg.solve(covariance[part][:, part], z[part]))
 
 
-def _others_p(z: Array, covariance: Array, mine: slice) -> float:
-    others = np.delete(np.arange(len(z)), mine)
-    return float(chdtrc(len(others), _squares(z, covariance, others))) if len(others) else 1.0
+def _others_p(z: Array, covariance: Array, shifted: Array) -> float:
+    """Probability by chance of what is left of z if one board may lie anywhere: then z is moved along `shifted`."""
+    if len(z) == shifted.shape[1]:
+        return 1.0
+    weighted = np.linalg.solve(covariance, np.column_stack([z, shifted]))
+    pulled = shifted.T @ weighted[:, 0]
+    squares = z @ weighted[:, 0] - pulled @ np.linalg.solve(shifted.T @ weighted[:, 1:], pulled)
+    return float(chdtrc(len(z) - shifted.shape[1], max(squares, 0.0)))
 
 
 def _block(number: int) -> slice:
