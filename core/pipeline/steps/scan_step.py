@@ -9,9 +9,8 @@ from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
-from core.pipeline.steps.scan.features import scan_features
+from core.pipeline.steps.scan.features import scan_features, see_boards, states_no_fan
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan, stored_poses_of
-from core.pipeline.steps.scan.known_planes import see_boards, states_no_fan
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames

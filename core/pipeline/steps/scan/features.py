@@ -9,6 +9,7 @@ from pathlib import Path
 from core.files.recording.picture_reader import PictureReader
 from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import stored_features
+from core.pipeline.steps.scan.known_planes import see_boards, states_no_fan
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
 from core.pipeline.steps.workspace import Calibration, check_size
 from core.progress import Progress, silent
@@ -16,6 +17,8 @@ from core.scan.features.extraction import FeatureOptions, FrameFeatures, Referen
 from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview
 from core.settings.options import Options
+
+__all__ = ["crossed_scan", "scan_features", "see_boards", "states_no_fan"]
 
 
 def scan_features(
