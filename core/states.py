@@ -9,8 +9,14 @@ from collections.abc import Sequence
 
 from core.messages import Message, label
 
-STEP_STATES = {"todo": label("to do"), "ready": label("ready"), "done": label("done"), "outdated": label("out of date")}
+STEP_STATES = {
+    "todo": label("to do"), "ready": label("ready"), "done": label("done"), "outdated": label("out of date"),
+    "not needed": label("not needed"),
+}  # fmt: skip
 """Of a step of the work, of a calibration, a check or a report."""
+
+NO_FAN = label("Not needed: rig.toml states no fan.")
+"""Why nothing of the fan is calibrated or checked in a project."""
 
 OUT_OF_DATE = {
     "camera": label("The accepted camera calibration is out of date; calibrate again."),

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.messages import label
-from workbench.step_state import State
+from workbench.step_state import SETTLED, State
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ def instruction(facts: Facts) -> Instruction:
     if facts.page == "project" and not begun and not facts.running:
         return PROJECT
     for step, solve, accept in (("camera", SOLVE_CAMERA, ACCEPT_CAMERA), ("planes", SOLVE_PLANES, ACCEPT_PLANES)):
-        if facts.states[step] is not State.DONE:
+        if facts.states[step] not in SETTLED:
             return accept if step in facts.solved else solve
     left = (one for one in (SCAN, INSPECT, REPORT) if facts.states[one.page] is not State.DONE)
     return next(left, FINISHED)

@@ -49,6 +49,7 @@ from workbench.pages.report.page import ReportPage
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
+from workbench.step_state import State
 from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
 from workbench.views import ask
@@ -173,10 +174,14 @@ class MainWindow(QMainWindow):
         self._refresh()
 
     def go(self, by: int) -> None:
-        """Show the page of the step before (−1) or after (1) the current one, if that is possible."""
-        names = [step.name for step in STEPS]
+        """Show the page of the step before (−1) or after (1) that is needed, if that is possible."""
         if not self._current:
             return
+        names = [
+            name
+            for name, state in self.model.states.items()
+            if name == self._current or state.state is not State.NOT_NEEDED
+        ]
         place = names.index(self._current) + by
         if 0 <= place < len(names) and (by < 0 or not self.presenters[self._current].blocker()):
             self.go_to(names[place])

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from core.files.project.data import Done, Project
-from core.files.project.keys import changed, inputs_of
+from core.files.project.keys import changed, inputs_of, is_needed
 from core.files.step_graph import MAIN, PAGES, needed_by
 from core.messages import capital, label
-from core.states import changed_since, outdated_with
+from core.states import NO_FAN, changed_since, outdated_with
 from workbench.language import joined, sentence, text_of, time_of, tr
 
 ORDER = ("project", *PAGES)
@@ -39,6 +39,11 @@ class State(StrEnum):
     READY = "ready"
     DONE = "done"
     OUTDATED = "outdated"
+    NOT_NEEDED = "not needed"
+
+
+SETTLED = (State.DONE, State.NOT_NEEDED)
+"""States of a step at which there is nothing to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +69,8 @@ def _project_state(project: Project) -> StepState:
 
 
 def _state(step: str, project: Project, results: Mapping[str, Done], before: Mapping[str, StepState]) -> StepState:
+    if not is_needed(MAIN[step], project):
+        return StepState(State.NOT_NEEDED, tr(NO_FAN))
     done = results.get(MAIN[step])
     if done is not None:
         why = list(changed(done.rests_on, inputs_of(MAIN[step], project, results)))
@@ -74,7 +81,7 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
             because = outdated_with([_NAMES[need] for need in stale])
             return StepState(State.OUTDATED, sentence(capital(text_of(because))))
         return StepState(State.DONE, tr("Done on {at}.", at=time_of(done.at)))
-    missing = [need for need in NEEDS[step] if MAIN[need] not in results]
+    missing = [need for need in NEEDS[step] if MAIN[need] not in results and is_needed(MAIN[need], project)]
     if missing:
         return StepState(State.TODO, tr("First: {steps}.", steps=joined(tr(_NAMES[need]) for need in missing)))
     return StepState(State.READY, tr("Ready to be done."))

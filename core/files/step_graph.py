@@ -85,6 +85,8 @@ class Step:
 
 CALIBRATED = ("camera", "planes")
 SURFACES = ("scan", "profile")
+OF_FAN = ("planes", "check")
+"""The steps of a project that are about the fan alone."""
 GRAPH = (
     Step("camera", "camera", ("camera",), "camera", reads=("camera",), in_project=True),
     Step("planes", "planes", ("poses", "planes"), "planes", ("camera",), reads=("planes",), in_project=True),

@@ -200,30 +200,28 @@ def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...
     return read_poses(_found(project_folder, "planes", id_).with_suffix(".npz"), id_)
 
 
-def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> None:
+def put_in_place(project_folder: Path, accepted: Accepted, results: Path, *, has_fan: bool = True) -> None:
     """Copy the `accepted` calibrations from the project's history into the folder of `results`, for the steps to read.
 
-    A file that says the same already is left alone.
+    A file that says the same already is left alone. Of a rig that has no fan, it is the camera's alone.
 
     Raises
     ------
     InputError
         If none is accepted, one is not in the history, the two are not of each other, or nothing can be written.
     """
-    for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.planes)):
+    for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.planes))[: 2 if has_fan else 1]:
         if not id_:
             raise InputError(
                 Message("project.none_accepted", "no calibration of the {kind} is accepted yet", kind=kind),
                 todo=Message("advice.calibrate_camera_and_accept", "calibrate, and accept the result"),
             )
     camera = read_stored_camera(project_folder, accepted.camera)
-    read_stored_planes(project_folder, accepted.planes, camera.camera)
-    fan = _found(project_folder, "planes", accepted.planes)
-    copies = {
-        "camera.json": _found(project_folder, "camera", accepted.camera),
-        "planes.json": fan,
-        "planes.npz": fan.with_suffix(".npz"),
-    }
+    copies = {"camera.json": _found(project_folder, "camera", accepted.camera)}
+    if has_fan:
+        read_stored_planes(project_folder, accepted.planes, camera.camera)
+        fan = _found(project_folder, "planes", accepted.planes)
+        copies |= {"planes.json": fan, "planes.npz": fan.with_suffix(".npz")}
     make_folder(results)
     for name, source in copies.items():
         _copy(source, results / name)

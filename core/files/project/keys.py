@@ -15,7 +15,7 @@ from typing import Any
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
 from core.files.recording.rig import as_calibrated_with, part_table, rig_tables
-from core.files.step_graph import CALIBRATED, IN_PROJECT
+from core.files.step_graph import CALIBRATED, IN_PROJECT, OF_FAN
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 from core.settings.options import settings_of
@@ -43,13 +43,18 @@ def inputs_of(step: str, project: Project, results: Mapping[str, Done]) -> dict[
     if step not in _OWN:
         raise ValueError(f"{step} is none of {', '.join(STEPS)}")
     known = {**asdict(project.accepted), **{name: done.key for name, done in results.items() if name not in CALIBRATED}}
-    return {**{_MADE[name]: known.get(name, "") for name in _made_of(step)}, **_OWN[step](project)}
+    return {**{_MADE[name]: known.get(name, "") for name in _made_of(step, project)}, **_OWN[step](project)}
 
 
-def _made_of(step: str) -> tuple[str, ...]:
+def is_needed(step: str, project: Project) -> bool:
+    """Whether a project can need `step` at all: without a fan there is none to calibrate or to check."""
+    return project.rig.has_fan or step not in OF_FAN
+
+
+def _made_of(step: str, project: Project) -> tuple[str, ...]:
     """The steps of a project whose results the result of `step` is made of, or shows."""
     graph = next(each for each in IN_PROJECT if each.name == step)
-    return tuple(name for name in (*graph.rests_on, *graph.shows) if name in _MADE)
+    return tuple(name for name in (*graph.rests_on, *graph.shows) if name in _MADE and is_needed(name, project))
 
 
 def changed(before: Keys, now: Keys) -> tuple[str, ...]:
@@ -79,7 +84,7 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
     }
     requests = {"gauge": "gauge" in results, "inspection": project.inspection.features}
     there, asked = ([name for name, one in which.items() if one] for which in (pictures, requests))
-    wanted = (step.name for step in IN_PROJECT if step.is_requested(there, asked))
+    wanted = (step.name for step in IN_PROJECT if step.is_requested(there, asked) and is_needed(step.name, project))
     return tuple(step for step in wanted if not up_to_date(step, project, results))
 
 

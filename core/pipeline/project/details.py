@@ -10,7 +10,7 @@ import numpy as np
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages
-from core.calibrate.results import FanCalibration
+from core.calibrate.results import NO_FAN, FanCalibration
 from core.calibrate.sitting import Acquisition
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_planes, read_stored_poses
@@ -59,9 +59,11 @@ def accepted_calibration(
 ) -> tuple[Camera | None, Fan | None, Acquisition | None]:
     """Read the accepted camera and fan, and how the fan's pictures were taken; None for each that is not there.
 
-    InputError if one is damaged or they are not a pair.
+    A rig without a fan has one of no lines. InputError if one is damaged or they are not a pair.
     """
     camera = accepted_camera(folder, project) if project.accepted.camera else None
+    if not project.rig.has_fan:
+        return camera, NO_FAN.fan, None
     if camera is None or not project.accepted.planes:
         return camera, None, None
     planes = read_stored_planes(folder, project.accepted.planes, camera)
@@ -72,7 +74,8 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
     """Read the scan among the results of the project in `folder`, for display; without points if none can be read."""
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
-    features = None if results.cloud is None else read_scan(results.files["scan"]).features
+    file = None if results.cloud is None else read_scan(results.files["scan"])
+    features = None if file is None else file.features
     half, most = np.quantile(cloud.sigma, (0.5, 0.95)) if len(cloud) else (np.nan, np.nan)
     return ShownScan(
         points=cloud.points.astype(np.float32),
@@ -89,6 +92,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
         notes=without_notes_on("frames", _scan_notes(results)),
         problems=results.problems,
         ground=None if results.gauge is None else results.gauge.lower.plane,
+        known_planes={} if file is None else {plane.name: plane.outline for plane in file.planes},
     )
 
 

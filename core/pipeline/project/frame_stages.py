@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -108,7 +108,9 @@ def frame_stages(
         sweep=features.centrelines,
         fan=common.shown.fan,
         fan_line=lines.line if lines else (UNASSIGNED,) * len(common.shown.fan),
-        seen=Preview(common.shown, camera, fan, PreviewOptions(thin=1), lines)(features) if camera and fan else None,
+        seen=Preview(common.shown, camera, fan, PreviewOptions(thin=1), lines)(features)
+        if camera and fan and fan.lines
+        else None,
         shift_px=features.shift_px,
         left_out=name in settings.excluded,
         reason=features.reason,
@@ -142,6 +144,7 @@ class _Recording:
     sites: Sites
     stripe: StripeSettings | None
     settled: SettledScan | None
+    has_fan: bool
     pictures: PictureReader = field(compare=False)
     settings: Options = field(compare=False)
     progress: Progress = field(compare=False)
@@ -163,6 +166,7 @@ class _Recording:
             pictures.sites("scan"),
             settings.stripe,
             settled,
+            recording_set.rig.has_fan,
             pictures,
             settings,
             progress,
@@ -178,6 +182,7 @@ def _common(recording: _Recording) -> _Common:
     looking = feature_options(settings)
     if settled:
         looking = feature_options(Options(stripe=settled.fan_stripe))
+    looking = replace(looking, has_fan=recording.has_fan)
     reference = read_reference(sites.of(picture), at_sites(looking, sites))
     told("reference", 1, 2)
     stripe = sites.stripe_of(settled.sweep_stripe if settled else settings.stripe)
@@ -194,4 +199,4 @@ def _lines(common: _Common, camera: Camera | None, fan: Fan | None, settled: Set
     pieces = common.shown.fan
     if settled and len(settled.fan_line) == len(pieces):
         return FanLines.settled_as(settled.fan_line)
-    return possible_fan_lines(pieces, camera, fan)[0] if camera and fan else None
+    return possible_fan_lines(pieces, camera, fan)[0] if camera and fan and fan.lines else None

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from core.calibrate.results import NO_FAN
 from core.errors import InputError
 from core.files.atomic import make_inner_folder
 from core.files.folder_lock import alone_in
@@ -17,6 +18,7 @@ from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
 from core.files.project.view_file import drop_view_of_another
 from core.files.recording.recording_set import RecordingSet, require_scan
+from core.files.results.planes_file import planes_id
 from core.files.results.run_file import write_run
 from core.files.step_graph import FILES
 from core.inspect.results import GaugeResult
@@ -27,7 +29,7 @@ from core.pipeline.steps.camera_step import solved_for
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.scan.pictures import SeenScan
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import Workspace, staged
+from core.pipeline.steps.workspace import HAS_FAN, Workspace, staged
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 from core.second_process import SecondProcess
@@ -73,7 +75,7 @@ def measure_scan(
     compile_ahead(progress)
     results = make_inner_folder(folder, RESULTS)
     with noting_results(folder), alone_in(results), staged(results, "scan", _OF_A_SCAN) as new:
-        put_in_place(folder, project.accepted, new)
+        put_in_place(folder, project.accepted, new, has_fan=project.rig.has_fan)
         work = Workspace.open(recording_set, new, part_name(project), folder / FOLDER)
         record_calibrations(work, folder, project)
         settings, earlier = project.options.for_scan, _earlier(recording_set, results, project)
@@ -113,7 +115,10 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
     except InputError:
         return None
     now = json.loads(to_json(dict(project.options.for_scan.run_settings("scan"))))
-    same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.planes}"
+    accepted = project.accepted
+    fan = accepted.planes if project.rig.has_fan else planes_id(NO_FAN.fan)
+    has_fan = {} if project.rig.has_fan else {HAS_FAN: False}
+    same = settings == now | has_fan and calibration == f"{accepted.camera}-{fan}"
     return None if same else before.path("scan")
 
 
@@ -125,7 +130,7 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
         ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
         ("planes", read_stored(folder, "planes", project.accepted.planes), calibration.fan.all_notes),
     )
-    for step, about, notes in steps:
+    for step, about, notes in steps[: 2 if project.rig.has_fan else 1]:
         made_at = {} if about is None else {step: about.kept_at}
         about = about or StoredCalibration("camera", "", record.measured_at, 0, 0)
         record = replace(

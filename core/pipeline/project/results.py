@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from core.calibrate.results import CameraCalibration
+from core.calibrate.results import NO_FAN, CameraCalibration
 from core.errors import InputError
 from core.files.project.folder import results_in
 from core.files.project.results import ProjectResults
@@ -18,7 +18,7 @@ from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
 from core.files.step_graph import FILES
 from core.messages import Message
-from core.pipeline.steps.workspace import Calibration, check_calibration
+from core.pipeline.steps.workspace import Calibration, check_calibration, states_fan
 from core.progress import Progress, silent
 from core.scan.preview.shown import SettledScan
 
@@ -35,17 +35,20 @@ def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
     it.
     """
     reader = _Reader(results_in(folder), progress)
+    record = reader.read("run", read_run)
     camera = reader.read("camera", read_camera)
-    calibration = reader.read("planes", lambda path: _calibration(path, camera))
+    if record is not None and not states_fan(record):
+        calibration = None if camera is None else Calibration(camera, NO_FAN)
+    else:
+        calibration = reader.read("planes", lambda path: _calibration(path, camera))
     cloud = reader.read("cloud", lambda path: _cloud(path, calibration))
     scan = reader.read("scan", lambda path: _scan(path, calibration))
     measured = cloud is not None and scan is not None
     mesh = reader.read("mesh", read_mesh) if measured else None
     gauge = reader.read("gauge", lambda path: read_gauge(path, cloud.cloud)) if cloud and measured else None
-    record = reader.read("run", read_run)
     return ProjectResults(
         camera=camera,
-        fan=calibration.fan if calibration else None,
+        fan=calibration.fan if calibration and calibration.fan.fan.lines else None,
         cloud=cloud.cloud if cloud and measured else None,
         mesh=mesh,
         gauge=gauge,

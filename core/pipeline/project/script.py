@@ -20,13 +20,13 @@ from core.files.plan.translation import plan_tables
 from core.files.project.calibration_store import IMPORTED
 from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import read_project, results_folder, source_folder, study_path
-from core.files.project.keys import changed, inputs_of, relocated
+from core.files.project.keys import changed, inputs_of, is_needed, relocated
 from core.files.reading import resolved
 from core.files.recording.rig import rig_to_toml
 from core.files.results.artefact_register import REGISTER, register_text
 from core.files.results.nominal_surface import nominal_names
 from core.files.results.run_file import RunRecord, read_run
-from core.files.step_graph import FILES
+from core.files.step_graph import CALIBRATED, FILES
 from core.files.toml_text import toml_text
 from core.messages import Message, label
 from core.pipeline.project.workspace import part_name, project_set, rig_in_its_air
@@ -112,9 +112,9 @@ def _inspects(project: Project, there: set[str]) -> bool:
 def _compared(folder: Path, project: Project, record: RunRecord) -> list[_Compared]:
     """The comparisons with artefacts of what was measured, as the rig's history has them, and the air's °C."""
     results = results_folder(folder)
-    if not all((results / FILES[name]).exists() for name in ("camera", "planes")):
+    if not all((results / FILES[name]).exists() for name in CALIBRATED if is_needed(name, project)):
         return []
-    calibration, found = read_calibration(results), project_set(folder, project)
+    calibration, found = read_calibration(results, has_fan=project.rig.has_fan), project_set(folder, project)
     checks, frames = history_of(project.rig, calibration.id).of_calibration(calibration.id), frames_id(found, record)
     return [
         (known, one.celsius) for one in checks if one.pictures_id == frames and (known := one.of_artefact) is not None

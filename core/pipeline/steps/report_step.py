@@ -44,7 +44,7 @@ from core.model import Camera
 from core.model.arrays import Array
 from core.pipeline.steps.brought_sections import with_brought_sections
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import HAS_FAN, Calibration, Workspace, check_calibration, read_calibration
+from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration, states_fan
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.wording import Words, target_in_words
@@ -164,7 +164,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         If a result is missing, damaged, or was measured with another calibration.
     """
     record = record or read_run(out / FILES["run"])
-    calibration = read_calibration(out, has_fan=record.settings.get("scan", {}).get(HAS_FAN, True))
+    calibration = read_calibration(out, has_fan=states_fan(record))
     gauge_path = out / FILES["gauge"]
     profiled = (out / FILES["profile"]).exists()
     cloud, mesh = _profiled(out, calibration) if profiled else _scanned(out, calibration)

@@ -294,6 +294,12 @@ def read_calibration(out: Path, *, has_fan: bool = True) -> Calibration:
     return Calibration(fan.camera_used(camera), fan)
 
 
+def states_fan(record: RunRecord) -> bool:
+    """Whether what a run.json tells of was measured with a fan."""
+    has_fan: bool = record.settings.get("scan", {}).get(HAS_FAN, True)
+    return has_fan
+
+
 def check_calibration(path: Path, found_id: str, calibration: Calibration) -> None:
     """Raise InputError if the calibration's id `found_id` in a result is not that of `calibration`; "" passes."""
     if found_id and found_id != calibration.id:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
@@ -75,7 +75,8 @@ class FramePreview(Excludable):
     crossing_reason
         One sentence for each crossing.
     condition
-        Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
+        Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few; NaN
+        without a fan.
     speed_px
         How far the stripe moves from frame to frame, in pixels: since the last frame looked at, by their number; NaN
         if not known.
@@ -147,6 +148,11 @@ def empty_preview(index: int, name: str, exclusion: Reason | None) -> FramePrevi
     )
 
 
+def stripes_alone(index: int, name: str, exclusion: Reason | None, centrelines: tuple[Centreline, ...]) -> FramePreview:
+    """Make the preview of a frame of which nothing but its stripe is known."""
+    return replace(empty_preview(index, name, exclusion), centrelines=centrelines, condition=float("nan"))
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameStages:
     """Pictures and features of one frame at every stage of processing.
@@ -169,7 +175,7 @@ class FrameStages:
         The fan's centrelines, and in `fan_line` the line (from 0) each of them belongs to; −1 where that is not known.
     seen
         Crossings, each good, weak or left out with the reason, as this frame gives them by itself; None without
-        calibrations.
+        calibrations, or a fan.
     shift_px
         How far the fan's light is from where it is in the reference.
     left_out
@@ -236,6 +242,8 @@ class ShownScan:
         Why a result that exists cannot be shown: whole sentences.
     ground
         Plane of the lower face, where the thickness of this scan was measured.
+    known_planes
+        By their boards' names, (K, 2) px: where the known planes it was measured with are seen.
     """
 
     points: NDArray[np.float32]
@@ -252,6 +260,7 @@ class ShownScan:
     notes: tuple[Message, ...]
     problems: tuple[Message, ...]
     ground: LightPlane | None = None
+    known_planes: Mapping[str, Array] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.points)

@@ -36,6 +36,7 @@ class CalibrationCard(StageCard):
         p = self._presenter
         stage: Stage = p.stage
         same = {
+            Stage.NOT_NEEDED: capital(tr(STEP_STATES["not needed"])),
             Stage.NONE: tr("No pictures yet"),
             Stage.EMPTY: tr("No pictures there"),
             Stage.SOLVING: tr("Solving …"),
@@ -46,6 +47,7 @@ class CalibrationCard(StageCard):
             Stage.OUTDATED: capital(tr(STEP_STATES["outdated"])),
         }
         sentences = {
+            Stage.NOT_NEEDED: p.state.sentence,
             Stage.EMPTY: tr("The folder holds no pictures; choose another one."),
             Stage.FAILED: p.work.problem,
             Stage.ACCEPTED: p.state.sentence,

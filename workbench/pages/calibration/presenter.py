@@ -115,6 +115,7 @@ class CalibrationPresenter(StepPresenter):
     def _facts(self) -> Facts:
         work, project = self.work, self.project
         return Facts(
+            needed=self.is_needed,
             live=self.live.running,
             searching=work.searching,
             solving=work.solving,
@@ -130,6 +131,11 @@ class CalibrationPresenter(StepPresenter):
             keeping=self.acceptance.keeping,
             read_only=self.model.is_read_only,
         )
+
+    @property
+    def is_needed(self) -> bool:
+        """Whether the rig has what is calibrated here."""
+        return self.state.state is not State.NOT_NEEDED
 
     @property
     def is_done(self) -> bool:
@@ -168,6 +174,7 @@ class CalibrationPresenter(StepPresenter):
             WhyNot.NOTHING: "",
             WhyNot.LIVE: tr("Stop the live source first."),
             WhyNot.READ_ONLY: self.bench.cannot_write,
+            WhyNot.NOT_NEEDED: self.state.sentence,
             WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
             WhyNot.NO_SOURCE: tr("Choose or record pictures first."),
             WhyNot.SEARCHING: missing[Stage.SEARCHING],

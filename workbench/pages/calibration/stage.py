@@ -9,6 +9,7 @@ from typing import NamedTuple
 class Stage(StrEnum):
     """Stage of a calibration."""
 
+    NOT_NEEDED = "not needed"
     NO_CAMERA = "no camera"
     NONE = "none"
     EMPTY = "empty"
@@ -29,6 +30,7 @@ class WhyNot(StrEnum):
 
     NOTHING = ""
     LIVE = "live"
+    NOT_NEEDED = "not needed"
     NO_CAMERA = "no camera"
     NO_SOURCE = "no source"
     SEARCHING = "searching"
@@ -50,6 +52,8 @@ class Buttons(NamedTuple):
 class Facts(NamedTuple):
     """Facts from which stage and buttons follow."""
 
+    needed: bool
+    """The rig has what is calibrated."""
     live: bool
     """Pictures are being taken."""
     searching: bool
@@ -111,6 +115,8 @@ class RestoreFacts(NamedTuple):
 
 def stage_of(facts: Facts) -> Stage:
     """Derive how far a calibration is (`Stage`) from what is known of its pictures and results."""
+    if not facts.needed:
+        return Stage.NOT_NEEDED
     if facts.live:
         return Stage.LIVE
     if facts.searching:
@@ -134,6 +140,8 @@ def stage_of(facts: Facts) -> Stage:
 
 def disabled_reasons(facts: Facts) -> Buttons:
     """Derive why the buttons run, accept and reject are disabled; "" for each that is enabled."""
+    if not facts.needed:
+        return Buttons(*[WhyNot.NOT_NEEDED] * len(Buttons._fields))
     return Buttons(_run(facts), _accept(facts), _reject(facts))
 
 

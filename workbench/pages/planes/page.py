@@ -58,6 +58,11 @@ class PlanesPage(CalibrationPage):
     def refresh(self) -> None:
         self.live.refresh()
         super().refresh()
+        needed = self.presenter.is_needed
+        self.side_panel.setVisible(needed)
+        self.tabs.tabBar().setVisible(needed)
+        if not needed:
+            self.tabs.setCurrentWidget(self.picture)
 
     def _error(self, view: Any) -> float:
         return float(view.rms_mm)

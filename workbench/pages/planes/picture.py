@@ -50,6 +50,14 @@ class PoseTab(PictureTab):
     def _words(self) -> tuple[str, str, str]:
         return tr("target"), tr("covered by poses taken"), tr("Looking for the plate …")
 
+    def refresh(self) -> None:
+        if self._presenter.is_needed:
+            super().refresh()
+        else:
+            self.line.hide()
+            self.hints.hide()
+            self.image.clear(self._presenter.state.sentence)
+
     def _empty(self) -> None:
         super()._empty()
         if self._presenter.stage is Stage.NO_CAMERA:

@@ -180,6 +180,8 @@ class PlanesPresenter(CalibrationPresenter):
 
     def _cannot_record(self) -> str:
         """Why no poses can be taken now, or ""."""
+        if not self.is_needed:
+            return self.state.sentence
         if self.work.searching:
             return tr("The pictures are being measured; wait for it, or cancel it.")
         if self.seen_by.reading:

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.files.project.data import Project
-from core.files.project.keys import FOUND_BY, inputs_of
+from core.files.project.keys import FOUND_BY, inputs_of, is_needed
 from core.messages import Message
 from core.model import Camera
 from workbench.bench import Bench
@@ -47,7 +47,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
         return tr("Laser planes"), tr("Solving the laser planes")
 
     def _can_search(self, project: Project) -> bool:
-        return bool(project.sources.planes and project.accepted.camera)
+        return bool(is_needed(self.STEP, project) and project.sources.planes and project.accepted.camera)
 
     def _recall(self, folder: Path, project: Project) -> None:
         if self._accepted_is_of_these_pictures(project):

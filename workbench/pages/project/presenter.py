@@ -12,7 +12,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.whole import MeasuringAll
-from workbench.step_state import ORDER, TITLES, State
+from workbench.step_state import ORDER, SETTLED, TITLES, State
 
 ProgressLevel = Literal["", "good", "warn", "bad"]
 
@@ -66,7 +66,7 @@ class ProjectPresenter(StepPresenter):
         """Write in one sentence what to do next in the project."""
         states = self.model.states
         for step in ORDER:
-            if states[step].state is not State.DONE:
+            if states[step].state not in SETTLED:
                 return tr("Next: {step}. {sentence}", step=tr(TITLES[step]), sentence=states[step].sentence)
         return tr("All steps are done.")
 

@@ -109,6 +109,7 @@ class ScanPage(StepPage):
         self.card.refresh()
         self.card.setVisible(not live)
         check_is_due = p.check_is_due and self.source.mode == "live"
+        self.check.setVisible(p.has_fan)
         self.check.refresh(wanted=check_is_due)
         before = p.live_stage in STAGES_BEFORE
         self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])
@@ -125,7 +126,7 @@ class ScanPage(StepPage):
         self.settings.refresh()
         self.settings.setEnabled(not live)
         self.profiles.refresh(p.cannot_measure)
-        self.profiles_fold.setVisible(bool(p.work.names) and not live)
+        self.profiles_fold.setVisible(p.has_fan and bool(p.work.names) and not live)
         self.result.refresh()
         self.result_fold.setVisible(p.work.look is not None and not live)
         self.frames_fold.setVisible(bool(p.work.names) and not live)

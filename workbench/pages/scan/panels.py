@@ -105,10 +105,13 @@ class ScanCard(StageCard):
         return tr("{count} points, median σ {sigma}.", count=count(len(look)), sigma=sigma(look.median_sigma_mm))
 
     def _how_to_begin(self) -> str:
+        p = self._presenter
         begin = tr("Sweep the part with a live source, or choose the folder of a recording.")
-        if self._presenter.calibrated:
+        if not p.has_fan:
+            begin = tr("Choose the folder of a recording with known planes.")
+        if p.calibrated:
             return begin
-        return tr("{begin} It can be measured once camera and laser planes are accepted.", begin=begin)
+        return tr("{begin} It can be measured once its calibrations are accepted.", begin=begin)
 
 
 class SettingsPanel(QWidget):
@@ -246,6 +249,6 @@ class RunningPanel(QWidget):
             self.condition.set_value(None)
             self.speed.set_value(None)
             return
-        self.condition.set_value(preview.condition)
+        self.condition.set_value(None if math.isnan(preview.condition) else preview.condition)
         speed: Any = None if math.isnan(preview.speed_px) or not width_px else preview.speed_px / width_px
         self.speed.set_value(speed, words.speed_text(preview.speed_px))

@@ -94,6 +94,7 @@ class ScanPresenter(StepPresenter):
     def _facts(self) -> Facts:
         accepted, state, work = self.project.accepted, self.state.state, self.work
         return Facts(
+            has_fan=self.has_fan,
             live=self.live.running,
             check_live=self.check_live.running,
             measuring=self.run.measuring,
@@ -101,7 +102,7 @@ class ScanPresenter(StepPresenter):
             measured=state in (State.DONE, State.OUTDATED),
             outdated=state is State.OUTDATED,
             camera=bool(accepted.camera),
-            planes=bool(accepted.planes),
+            planes=bool(accepted.planes) or not self.has_fan,
             calibrations_read=work.calibrations_read,
             source=bool(self.project.sources.scan),
             listed=work.frames is not None,
@@ -166,9 +167,15 @@ class ScanPresenter(StepPresenter):
         return changed(done.rests_on, inputs_of("scan", self.project, {})) if done is not None else ()
 
     @property
+    def has_fan(self) -> bool:
+        """Whether the rig has a fan that is calibrated and checked, and whose lines measure alone."""
+        return self.project.rig.has_fan
+
+    @property
     def calibrated(self) -> bool:
-        """Whether camera and light planes are accepted; without them frames give stripes but no points."""
-        return bool(self.project.accepted.camera and self.project.accepted.planes)
+        """Whether all is accepted that a scan is measured with; without it frames give stripes but no points."""
+        facts = self._facts()
+        return facts.camera and facts.planes
 
     @property
     def check_is_due(self) -> bool:
@@ -176,7 +183,7 @@ class ScanPresenter(StepPresenter):
 
         Planes that were calibrated a moment ago are as good as a check.
         """
-        if self.stage is not Stage.NONE or not (self.calibrated and self.work.calibrations_read):
+        if self.stage is not Stage.NONE or not (self.has_fan and self.calibrated and self.work.calibrations_read):
             return False
         if self.check.stage is CheckStage.CHECKING or not scan_begins_live(self.model):
             return False
@@ -198,7 +205,7 @@ class ScanPresenter(StepPresenter):
         self.run.cancel()
         put_source(self.model, "scan", folder, tr("choose the recording of the scan"))
         its_check = folder.parent / CHECK
-        if folder.name == "scan" and its_check.is_dir():
+        if self.has_fan and folder.name == "scan" and its_check.is_dir():
             self.check.use_folder(its_check)
 
     # ---- frames
@@ -369,6 +376,7 @@ class ScanPresenter(StepPresenter):
         return {
             WhyNot.NOTHING: "",
             WhyNot.MEASURING: tr("The scan is being measured; wait for it, or cancel it."),
+            WhyNot.NO_FAN: tr("A live scan needs a fan; choose the folder of a recording with known planes."),
             WhyNot.CHECK_LIVE: tr("Pictures of the check are being taken."),
             WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
         }[disabled_reasons(self._facts()).record]
@@ -412,6 +420,4 @@ class ScanPresenter(StepPresenter):
         if self.calibrated:
             self.run.start(by_itself=True)
         else:
-            self.bench.notices.info(
-                tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")
-            )
+            self.bench.notices.info(tr("The scan is recorded. It can be measured once its calibrations are accepted."))

@@ -43,6 +43,7 @@ class WhyNot(StrEnum):
     NO_FRAMES = "no frames"
     ALL_LEFT_OUT = "all left out"
     CHECK_LIVE = "check live"
+    NO_FAN = "no fan"
     READ_ONLY = "read-only"
     READING_CALIBRATIONS = "reading calibrations"
 
@@ -59,6 +60,8 @@ class Buttons(NamedTuple):
 class Facts(NamedTuple):
     """Facts from which stage and buttons follow."""
 
+    has_fan: bool
+    """The rig has a fan, by which a live scan is previewed."""
     live: bool
     """A scan is being recorded."""
     check_live: bool
@@ -72,7 +75,7 @@ class Facts(NamedTuple):
     """It is not what the project would give now."""
     camera: bool
     planes: bool
-    """A camera calibration, and laser planes, are accepted."""
+    """A camera calibration, and laser planes where the rig has a fan, are accepted."""
     calibrations_read: bool
     source: bool
     """A recording is chosen."""
@@ -125,6 +128,8 @@ def _measure(facts: Facts) -> WhyNot:
 
 
 def _record(facts: Facts) -> WhyNot:
+    if not facts.has_fan:
+        return WhyNot.NO_FAN
     if facts.measuring:
         return WhyNot.MEASURING
     if facts.check_live:

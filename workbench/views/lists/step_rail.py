@@ -16,6 +16,7 @@ BADGES = {
     "ready": ("mdi6.circle-half-full", "accent"),
     "done": ("mdi6.check-circle", "good"),
     "outdated": ("mdi6.alert-circle-outline", "warn"),
+    "not needed": ("mdi6.minus-circle-outline", "muted"),
 }
 """Icon and colour of each state; the shapes differ as well."""
 

@@ -15,7 +15,7 @@ from core.pipeline.steps.workspace import Calibration, check_size
 from core.progress import Progress, silent
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.preview.frames import Preview
-from core.scan.preview.shown import FramePreview
+from core.scan.preview.shown import FramePreview, stripes_alone
 from core.settings.options import Options
 
 __all__ = ["crossed_scan", "scan_features", "see_boards", "states_no_fan"]
@@ -77,6 +77,8 @@ def _watching(
     """How each frame is shown with what it would give by itself, once the reference is read."""
 
     def watching(reference: ReferenceFeatures) -> Callable[[FrameFeatures], None]:
+        if not fan.lines:  # a frame by itself has nothing to be located by, and is not to be found fault with
+            return lambda seen: watch(stripes_alone(seen.index, seen.name, seen.exclusion, seen.centrelines))
         preview = Preview(reference, camera, fan)
 
         def show(features: FrameFeatures) -> None:

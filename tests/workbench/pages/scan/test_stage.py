@@ -47,7 +47,7 @@ def test_in_every_state_the_next_thing_to_do_can_be_done():
             assert not can.measure, facts
         if stage is Stage.MEASURING:
             assert not can.cancel, facts
-        if stage in (Stage.NONE, Stage.EMPTY) and facts.calibrations_read and not facts.check_live:
+        if stage in (Stage.NONE, Stage.EMPTY) and facts.has_fan and facts.calibrations_read and not facts.check_live:
             assert not can.record, facts
 
 

@@ -1,0 +1,81 @@
+"""A project whose rig states no fan: nothing about the fan stands in the way, and nothing about it is offered."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.files.pictures import write_picture
+from core.files.project.data import Accepted, Project, Sources, new_project
+from core.files.project.keys import finished, left_to_do
+from core.states import NO_FAN
+from tests.workbench.pages import scan_cases
+from workbench.main_window import MainWindow
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.scan.stage import Stage as ScanStage
+
+
+def without_fan(folder: Path) -> Project:
+    """With an accepted camera, and small pictures that stand for those of planes, a check and a scan."""
+    for part in ("planes", "check", "scan"):
+        (folder / part).mkdir(parents=True)
+        for number in range(3):
+            name = scan_cases.name_of(number).removeprefix("scan/")
+            write_picture(folder / part / name, np.full(scan_cases.SIZE[::-1], 40, np.uint8))
+    made = new_project("Corner")
+    sources = Sources(**{part: (folder / part).as_posix() for part in ("planes", "check", "scan")})
+    return replace(made, rig=replace(made.rig, lines=0, angle=0.0), sources=sources, accepted=Accepted("camera-1", ""))
+
+
+@pytest.fixture
+def opened(window: MainWindow, tmp_path: Path) -> MainWindow:
+    model = window.model
+    model.create(tmp_path / "project", without_fan(tmp_path / "pictures"))
+    model.record("camera", finished("camera", model.project, {}))
+    return window
+
+
+def test_next_and_back_go_past_the_laser_planes(opened: MainWindow) -> None:
+    opened.go_to("camera")
+    opened.go(1)
+    assert opened.current == "scan"
+    opened.go(-1)
+    assert opened.current == "camera"
+    states = opened.model.states
+    assert opened.rail.state_of("planes") == "not needed" and states["planes"].sentence == NO_FAN
+    assert states["scan"].state == "ready"
+    assert left_to_do(opened.model.project, opened.model.results) == ("scan", "report")
+
+
+def test_the_laser_planes_say_why_they_are_not_needed_and_offer_nothing(opened: MainWindow, qtbot: Any) -> None:
+    opened.go_to("planes")
+    page: Any = opened.pages["planes"]
+    p = page.presenter
+    qtbot.waitUntil(lambda: not opened.bench.quick.busy)
+    assert page.picture.image._empty.message == NO_FAN and not page.side_panel.isVisible()
+    assert p.stage is Stage.NOT_NEEDED and p.blocker() == ""
+    assert {p.cannot_search, p.cannot_accept, p.cannot_reject, p.live.why_not_start} == {NO_FAN}
+    assert not p.work.searching
+
+
+def test_a_scan_can_be_measured_with_the_camera_alone_and_no_check_is_offered(opened: MainWindow, qtbot: Any) -> None:
+    opened.go_to("scan")
+    page: Any = opened.pages["scan"]
+    p = page.presenter
+    qtbot.waitUntil(lambda: p.stage is ScanStage.RECORDED)
+    page.refreshing.at_once()
+    assert p.cannot_measure == "" and p.calibrated
+    assert p.live.why_not_start.startswith("A live scan needs a fan")
+    assert page.card.isVisible() and not page.check.isVisible() and not page.profiles_fold.isVisible()
+
+
+def test_a_fan_that_is_stated_again_is_wanted_again(opened: MainWindow) -> None:
+    model = opened.model
+    model.edit("state a fan", replace(model.project, rig=replace(model.project.rig, lines=3)))
+    assert model.states["planes"].state == "ready"
+    assert model.states["scan"].sentence.startswith("First: calibrate the laser planes")
+    assert "planes" in left_to_do(model.project, model.results)
