@@ -69,6 +69,9 @@ OTHER_SURFACE = "#9A7BD0"
 DEVIATIONS = ("#08306B", "#2166AC", "#5B9FD0", "#A6CDE6", "#C9CDD2", "#F4B79A", "#E08259", "#C4403C", "#7A0221")
 """Classes of deviations from a nominal surface, from the farthest inwards to the farthest outwards; marks tell more."""
 
+KNOWN_PLANE = "#C6A8FF"
+"""Outlines of the known planes beside the part."""
+
 CROSSING_GOOD = Mark("#3DDC84", "o")
 CROSSING_WEAK = Mark("#FFB000", "t")
 CROSSING_LEFT_OUT = Mark("#FF5C57", "x")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.image.stripes.centreline import Centreline
+from core.model.arrays import Array
 from core.pipeline.live.events import PlanesDetail
 from core.scan.preview.hints import HintLimits
 from core.scan.preview.shown import FramePreview
@@ -19,6 +20,7 @@ from workbench.views.colours import (
     CROSSING_LEFT_OUT,
     CROSSING_WEAK,
     EXCLUDED,
+    KNOWN_PLANE,
     SWEEP,
     fan_colour,
 )
@@ -128,6 +130,15 @@ def show_points(
         "points", np.split(uv, ends), values=np.split(sigma, ends), limits=(0.0, limit_mm), width=4.0,
         title=tr("points: σ 0 … {limit:g} mm", limit=limit_mm),
     )  # fmt: skip
+
+
+def show_known_planes(image: ImageView, outlines: Mapping[str, Array]) -> None:
+    """Show the known planes, each a closed outline (K, 2) in px with its name; none removes them."""
+    if not outlines:
+        image.remove_layer("known planes")
+        return
+    closed = [np.concatenate([outline, outline[:1]]) for outline in outlines.values()]
+    image.set_lines("known planes", closed, colour=KNOWN_PLANE, labels=list(outlines), title=tr("known planes"))
 
 
 def show_coverage(image: ImageView, cells: NDArray[np.bool_], lit: NDArray[np.bool_]) -> None:

@@ -111,7 +111,8 @@ class ScanPicture(QWidget):
         if stages is None:
             self._clear(scrub.problem or tr("The frame is being looked at …"))
             return
-        wanted = (stages, self.wanted, points[0] is not None)
+        planes = self._presenter.work.known_planes()
+        wanted = (stages, self.wanted, points[0] is not None, tuple(planes))
         if self._shown == wanted:
             return
         self._begin("frame")
@@ -120,6 +121,7 @@ class ScanPicture(QWidget):
         self.image.set_picture(shown.get(self.wanted, stages.picture))
         place = list(View).index(self.wanted)
         self.image.clear_layers()
+        overlays.show_known_planes(self.image, planes)
         if place >= list(View).index(View.CENTRELINES):
             overlays.show_fan_pieces(self.image, stages.fan, stages.fan_line)
             overlays.show_swept(self.image, stages.sweep, stages.bounced)

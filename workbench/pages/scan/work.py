@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.sitting import Acquisition
 from core.model import Camera, Fan
+from core.model.arrays import Array
 from core.scan.features.frames import FrameRecord
 from core.scan.preview.shown import ShownScan
 from workbench.bench import Bench
@@ -54,6 +55,10 @@ class ScanWork(QObject):
     def records(self) -> Mapping[str, FrameRecord]:
         """Return what the measured scan says of each frame, by name; empty if it is of another recording."""
         return {record.name: record for record in self.look.frames} if self.look and self.of_this_recording else {}
+
+    def known_planes(self) -> Mapping[str, Array]:
+        """Return where the known planes of this recording are seen, (K, 2) px by name; empty until it is measured."""
+        return self.look.known_planes if self.look and self.of_this_recording else {}
 
     @property
     def of_this_recording(self) -> bool:

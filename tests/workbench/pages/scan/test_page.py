@@ -409,6 +409,24 @@ def test_every_stage_of_a_frame_can_be_seen(measured, qtbot, view, layers):
     assert image._picture.picture[0, 0] == shown
 
 
+def test_known_planes_are_outlined_with_their_names_once_the_scan_is_measured(recorded, scan_bench, measuring, qtbot):
+    corners = np.array([[4.0, 4.0], [40.0, 4.0], [40.0, 30.0], [4.0, 30.0]])
+    cast(HandLane, scan_bench.quick).answers[jobs.SHOW_SCAN] = lambda folder: replace(
+        cases.look(), known_planes={"plate": corners}
+    )
+    image = recorded.picture.image
+    assert "known planes" not in image.layer_names()
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
+    measuring.finish(cases.summary())
+    qtbot.waitUntil(lambda: "known planes" in image.layer_names())
+    assert "known planes" in image.legend_titles
+    assert [text for _, text, _ in image._layers["known planes"]._labels] == ["plate"]
+    qtbot.mouseClick(recorded.bar.stages[View.RECORDED], LEFT)
+    assert set(image.layer_names()) == {"known planes"}
+    scan_bench.model.edit("other", replace(scan_bench.model.project, sources=Sources()))
+    assert recorded.presenter.work.known_planes() == {}
+
+
 def test_second_bounces_are_seen_as_such_and_listed(measured):
     image, (own, mirrored) = measured.picture.image, (cases.line(4, 30, 10.0), cases.line(34, 60, 14.0))
     overlays.show_swept(image, (own, mirrored), (1,))
