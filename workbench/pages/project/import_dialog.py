@@ -44,6 +44,7 @@ _KINDS = "AVI, MP4, MOV, MKV, GIF, PNG, WebP ({})".format(
 )
 """What a film may be."""
 _MARGINS = (9, 9, 9, 9)
+"""Around the dialog, px, as Qt has them by itself."""
 _PREVIEW_PX = 900
 """Pictures are shown so wide at most."""
 
