@@ -179,6 +179,7 @@ ALLOWED = {
     "core/files/results/frame_text.py": "what the file says to other programs",
     "core/files/results/mesh_export.py": "what the file says to other programs",
     "core/files/results/ply.py": "what the file says to other programs",
+    "workbench/no_display.py": "names of packages",
     "trisect/start.py": "what is said where the program's own folders are not found, and its translations neither",
     "core/files/project/folder.py": "what the file says that a double click opens",
 }
