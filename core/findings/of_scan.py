@@ -50,7 +50,7 @@ ROWS = (
             "taken. U need not contain it: check the rig, and scan again.", fact="fan_disagrees"),
     # Known planes
     Finding("scan.board_not_found", Weight.CAUTION, Effect.NONE,
-            "The board {board} is not used: {reason}."),
+            "The board {board} is not used: {reasons:;}."),
     Finding("scan.board_picture_left_out", Weight.CAUTION, Effect.NONE,
             "A picture of the board {board} is not used: {reason}."),
     Finding("scan.board_moved", Weight.CAUTION, Effect.NONE,

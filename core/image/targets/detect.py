@@ -51,13 +51,13 @@ def detect(
     TargetNotFound
         If the picture does not show the whole target (ChArUco: at least six corners, not all in one line; checkerboard:
         a part whose corners are known by the ends it shows); the sentence tells no target at all, a target of another
-        size, a part of one, and an empty picture from each other.
+        size, a part of one, and an empty picture from each other. If `region_px` lies outside of the picture.
     ValueError
         If the picture is not 2-D uint8 or uint16.
     """
     check_exposure(picture, name)
     if region_px is not None:
-        picture = only_within(picture, np.asarray(region_px, dtype=np.float64))
+        picture = only_within(picture, np.asarray(region_px, dtype=np.float64), name)
     match target:
         case Checkerboard():
             view = detect_checkerboard(target, picture, name, camera if plane_only else None, thorough=thorough)

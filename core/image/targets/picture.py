@@ -123,11 +123,24 @@ def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]
     return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
 
 
-def only_within(picture: Picture, polygon: Array) -> Picture:
-    """Cover all of a picture (H, W) outside a `polygon` (K, 2) in px by the nearest grey levels in it: no new edges."""
+def only_within(picture: Picture, polygon: Array, name: str) -> Picture:
+    """Cover all of a picture (H, W) outside a `polygon` (K, 2) in px by the nearest grey levels in it: no new edges.
+
+    TargetNotFound, with the picture's `name`, if the polygon lies outside of it.
+    """
     within = cv2.fillPoly(np.zeros(picture.shape, np.uint8), [np.rint(polygon).astype(np.int32)], 1)
     if not within.any():
-        return picture
+        height, width = picture.shape
+        raise TargetNotFound(
+            Message(
+                "target.region_outside",
+                "the region to look in lies outside of the picture of {width} × {height} pixels",
+                width=width,
+                height=height,
+            ),
+            where=name,
+            todo=Message("advice.check_region", "check region_px: it is in pixels of the picture, from its top left"),
+        )
     rows, columns = distance_transform_edt(within == 0, return_distances=False, return_indices=True)
     covered: Picture = picture[rows, columns]
     return covered

@@ -1,7 +1,8 @@
 """A known plane from pictures of its board: its pose by the target on it, and how well that is known.
 
 A board is one plane, however many pictures show it: that which agrees best with all of them. Pictures that say
-something else, beyond the noise of their points, show that it moved between them: then nothing is known of it.
+something else, beyond the noise of their points, show that it moved between them: then nothing is known of it. Where
+they are off by too little to do harm, the plane is known as much worse as they disagree more than their noise explains.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
@@ -91,17 +91,18 @@ def seek_plane(board: BoardOf, pictures: Sequence[tuple[str, NDArray[Any]]], cam
             seen.append(_seen(board, picture, name, camera))
             shown.append(picture)
         except InputError as error:
-            reasons.append(error.message)
+            reasons.append(error.reason)
     if not seen:
-        reason = reasons[0] if reasons else Message("scan.board_without_picture", "no picture shows it")
-        return SoughtPlane(None, (note_of("scan.board_not_found", board=board.name, reason=reason),))
+        why = tuple(reasons) or (Message("scan.board_without_picture", "no picture shows it"),)
+        return SoughtPlane(None, (note_of("scan.board_not_found", board=board.name, reasons=why),))
     weights = [np.linalg.inv(one.covariance) for one in seen]
     of_pose = np.linalg.inv(np.sum(weights, axis=0))
     pi = of_pose @ np.sum([w @ one.pi for w, one in zip(weights, seen, strict=True)], axis=0)
     notes = tuple(note_of("scan.board_picture_left_out", board=board.name, reason=reason) for reason in reasons)
     moved_mm = max(_apart_mm(one, pi) for one in seen)
     squares = sum(float((one.pi - pi) @ w @ (one.pi - pi)) for w, one in zip(weights, seen, strict=True))
-    if moved_mm > LEAST_SHIFT_MM and chdtrc(max(3 * (len(seen) - 1), 1), squares) < MOVED:
+    freedom = max(3 * (len(seen) - 1), 1)
+    if moved_mm > LEAST_SHIFT_MM and chdtrc(freedom, squares) < MOVED:
         return SoughtPlane(None, (*notes, note_of("scan.board_moved", board=board.name, mm=moved_mm)))
     first = seen[0]
     plate, by_camera = Plate(board.target, first.view, camera, board.margin_mm), np.zeros((3, 10))
@@ -112,7 +113,7 @@ def seek_plane(board: BoardOf, pictures: Sequence[tuple[str, NDArray[Any]]], cam
         board.name,
         pi,
         _outline(plate, first.pose, camera),
-        of_pose,
+        max(1.0, squares / freedom) * of_pose,
         _of_flatness(first.pose, plate.corners, board.tolerance.flatness_sd_mm),
         by_camera,
         even.uneven,
@@ -128,7 +129,7 @@ def seek_plane(board: BoardOf, pictures: Sequence[tuple[str, NDArray[Any]]], cam
 
 def _seen(board: BoardOf, picture: NDArray[Any], name: str, camera: Camera) -> _Seen:
     """The board in one picture; TargetNotFound if it is not seen, or its pose is not sure."""
-    view = detect(board.target, _within(picture, board.region_px), name, camera, plane_only=True)
+    view = detect(board.target, picture, name, camera, plane_only=True, region_px=board.region_px)
     found = estimate_pose(view, camera)
     if found.ambiguous:
         raise TargetNotFound(
@@ -150,15 +151,6 @@ def _seen(board: BoardOf, picture: NDArray[Any], name: str, camera: Camera) -> _
     noise = max(1.0, float(off @ off) / max(len(off) - 6, 1)) if len(off) > 12 else 1.0
     follows = -by_step @ inverse @ own.T @ view.whitened(by_camera)
     return _Seen(view, found.pose, pi, noise * by_step @ inverse @ by_step.T, follows, found.rms_px)
-
-
-def _within(picture: NDArray[Any], region: Sequence[tuple[float, float]] | None) -> NDArray[Any]:
-    """The picture with the same grey everywhere beyond a region."""
-    if region is None:
-        return picture
-    inside = np.zeros(picture.shape, dtype=np.uint8)
-    cv2.fillPoly(inside, [np.rint(np.array(region)).astype(np.int32)], 1)
-    return np.where(inside > 0, picture, np.quantile(picture[inside > 0], 0.8).astype(picture.dtype))
 
 
 def _apart_mm(one: _Seen, pi: Array) -> float:
