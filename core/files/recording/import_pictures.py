@@ -66,7 +66,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     plan
         Which pictures, under which names.
     target
-        The set. It may have other parts already, and a rig.toml.
+        The set. It may have other parts already, known planes without their scan among them, and a rig.toml.
     rig
         A rig.toml to copy into it.
     progress
@@ -109,9 +109,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
                     ways[name] = FRAME
                     progress("importing", len(ways), total)
         for beside, place in made.items():
-            if place.is_dir():
-                place.rmdir()  # empty: looked at before
-            rename(beside, place)
+            _put(beside, place, target / KNOWN_PLANES)
     except OSError as error:
         raise cannot_write(target, error) from error
     finally:
@@ -132,7 +130,7 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
         raise InputError(Message("set.file_not_folder", "is a file, not a folder"), where=target)
     for part in plan.parts:
         place = target / part
-        if place.exists() and not (place.is_dir() and not any(place.iterdir())):
+        if place.exists() and not (place.is_dir() and all(path == target / KNOWN_PLANES for path in place.iterdir())):
             raise InputError(
                 Message("import.part_is_there", "the set has its {part} pictures already", part=part),
                 where=place,
@@ -150,6 +148,25 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
                 where=target / RIG,
                 todo=Message("import.advice_one_rig", "keep one of the two"),
             )
+
+
+def _put(beside: Path, place: Path, known_planes: Path) -> None:
+    """Put a filled folder in its place, which is free or holds the boards of a scan alone: they stay as they are."""
+    aside = None
+    if known_planes.parent == place and known_planes.is_dir():
+        if any(known_planes.iterdir()):
+            aside = beside_of(place.with_name(f"{place.name}-{known_planes.name}"))  # no name of leftovers, which go
+            rename(known_planes, aside)
+        else:
+            known_planes.rmdir()
+    try:
+        if place.is_dir():
+            place.rmdir()  # empty: looked at before
+        rename(beside, place)
+    finally:
+        if aside is not None:
+            place.mkdir(exist_ok=True)
+            rename(aside, known_planes)
 
 
 def _require_room(plan: ImportPlan, target: Path) -> None:

@@ -11,6 +11,7 @@ from PIL import Image
 
 from core.errors import InputError
 from core.files.reading import read_json
+from core.files.recording import import_pictures as import_module
 from core.files.recording.import_pictures import import_pictures
 from core.files.recording.import_plan import ImportRequest, Order, Where, plan_import
 from core.files.recording.recording_set import open_set
@@ -238,7 +239,7 @@ def test_pictures_of_kinds_that_are_not_read_are_told(tmp_path):
     assert codes(plan_import(ImportRequest(camera=Where(tmp_path))).notes) == ["set.not_read"]
 
 
-def test_boards_beside_the_part_keep_their_names_with_their_scan_or_after_it(tmp_path):
+def test_boards_beside_the_part_keep_their_names_with_their_scan_before_or_after_it(tmp_path):
     boards = pictures(tmp_path / "boards", "wall.png", "wall_2.png", "wall_10.png")
     frames = pictures(tmp_path / "frames", "f1.png", "f2.png")
     (tmp_path / "rig.toml").write_text(rig_to_toml(default_rig()))
@@ -247,10 +248,32 @@ def test_boards_beside_the_part_keep_their_names_with_their_scan_or_after_it(tmp
     import_pictures(plan_import(ImportRequest(scan=Where(frames))), tmp_path / "one-by-one", tmp_path / "rig.toml")
     later = plan_import(ImportRequest(known_planes=Where(boards)))
     import_pictures(later, tmp_path / "one-by-one")
-    for name in ("at-once", "one-by-one"):
+    import_pictures(later, tmp_path / "boards-first", tmp_path / "rig.toml")
+    import_pictures(plan_import(ImportRequest(scan=Where(frames))), tmp_path / "boards-first")
+    for name in ("at-once", "one-by-one", "boards-first"):
+        assert sorted(path.name for path in (tmp_path / name).iterdir()) == ["import.json", "rig.toml", "scan"]
         found = open_set(tmp_path / name)
         assert [path.name for path in found.frames] == ["f1.png", "f2.png"]
         (wall,) = found.known_planes
         assert [path.name for path in wall.pictures] == ["wall.png", "wall_2.png", "wall_10.png"]
     with pytest.raises(InputError, match="the set has its scan/planes pictures already"):
         import_pictures(later, tmp_path / "at-once")
+    (tmp_path / "empty" / "scan" / "planes").mkdir(parents=True)
+    import_pictures(both, tmp_path / "empty")
+    assert len(list((tmp_path / "empty" / "scan" / "planes").iterdir())) == 3
+
+
+def test_boards_stay_where_the_frames_of_their_scan_cannot_be_put_beside_them(tmp_path, monkeypatch):
+    boards, frames = pictures(tmp_path / "boards", "wall.png"), pictures(tmp_path / "frames", "f1.png", "f2.png")
+    import_pictures(plan_import(ImportRequest(known_planes=Where(boards))), tmp_path / "set")
+
+    def failing(source, place):
+        if place.name == "scan":
+            raise PermissionError("held")
+        source.rename(place)
+
+    monkeypatch.setattr(import_module, "rename", failing)
+    with pytest.raises(InputError, match="cannot be written"):
+        import_pictures(plan_import(ImportRequest(scan=Where(frames))), tmp_path / "set")
+    assert [path.name for path in (tmp_path / "set" / "scan" / "planes").iterdir()] == ["wall.png"]
+    assert sorted(path.name for path in (tmp_path / "set").iterdir()) == ["import.json", "scan"]
