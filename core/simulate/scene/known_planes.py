@@ -49,8 +49,7 @@ def boards_of(scenario: Scenario, plate: Target, table: Pose) -> tuple[Board, ..
     if boards and beside.bent_mm:
         first = boards[0]
         boards[0] = Board(first.name, first.pattern, first.pose, first.bow_mm + beside.bent_mm)
-    background = [Board(one.name, one.pattern.on(TABLE_ALBEDO), one.pose, one.bow_mm) for one in boards]
-    return tuple(background)
+    return tuple(Board(one.name, one.pattern.on(TABLE_ALBEDO), one.pose, one.bow_mm) for one in boards)
 
 
 def _leaning(outline: Array, corner_deg: float, side: float) -> Pose:
