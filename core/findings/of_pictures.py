@@ -7,10 +7,11 @@ from core.findings.finding import Effect, Finding, Weight
 ROWS = (
     # Files of a set
     Finding("set.not_read", Weight.CAUTION, Effect.NONE,
-            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png, or import the frames "
-            "of a film.",
-            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, or import the "
-            "frames of a film."),
+            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png.",
+            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png."),
+    Finding("set.films_not_read", Weight.CAUTION, Effect.NONE,
+            "{n} film in {folder} is not read ({names}): import its frames.",
+            "{n} films in {folder} are not read ({names}): import the frames of one."),
     Finding("set.log_not_read", Weight.CAUTION, Effect.WIDENS_U,
             "The log of a recording is damaged ({reason}): when and by which camera it was made, and whether frames "
             "were lost, is not known, and U may be larger by what may have changed since the calibration. Remove the "

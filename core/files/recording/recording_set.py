@@ -60,7 +60,7 @@ _BRACKETED = ("planes", "scan", CHECK)
 class PlanePictures:
     """Known plane of a scan: a board called `name`, what rig.toml states of it, and the pictures that show it.
 
-    Without pictures of its own it is seen in the scan's.
+    Without pictures of its own it is looked for in the scan's picture with the fan alone, `reference`.
     """
 
     name: str
@@ -272,13 +272,11 @@ def gather_set(
 
 def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Message) -> InputError:
     """The error of a part without pictures; where there are some of a kind that is not read, these are to be told."""
-    unread = names_not_read(recording_set.folders.get(part))
-    if unread:
-        todo = Message(
-            "advice.convert_pictures",
-            "convert {names} to png, or import the frames of a film",
-            names=unread[:NAMES_SHOWN],
-        )
+    pictures, films = names_not_read(recording_set.folders.get(part))
+    if pictures:
+        todo = Message("advice.convert_to_png", "convert {names} to png", names=pictures[:NAMES_SHOWN])
+    elif films:
+        todo = Message("advice.import_film", "import the frames of {name}", name=films[0])
     return InputError(what, where=recording_set.where(part), todo=todo)
 
 

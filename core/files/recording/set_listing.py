@@ -29,11 +29,11 @@ FURTHER = (2, 3)
 _FURTHER = re.compile(rf"(.+)@({'|'.join(map(str, FURTHER))})")
 _REFERENCE = "reference"
 _NOT_READ = frozenset(
-    {".webp", ".gif", ".heic", ".heif", ".avif", ".jp2", ".raw", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".ppm", ".pnm"}
-    | {".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm", ".wmv", ".mpg", ".mpeg"}
+    {".webp", ".heic", ".heif", ".avif", ".jp2", ".raw", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".ppm", ".pnm"}
+    | {".wmv", ".mpg", ".mpeg"}
 )
-"""Endings (lower case) of pictures and films that a camera or a telephone may have written beside those that are read:
-what coding they have lost, a stripe's noise does not show."""
+"""Endings (lower case) of pictures and films that a camera or a telephone may have written beside those that are read,
+and that are no `FILMS`, which can be imported: what coding they have lost, a stripe's noise does not show."""
 _NUMBERED = re.compile(r"(.+)_(?:[2-9]|[1-9]\d+)")
 """Name of a second or later picture of one board: NAME_2, NAME_3."""
 NAMES_SHOWN = 3
@@ -70,23 +70,31 @@ def films_in(folder: Path) -> tuple[Path, ...]:
         raise cannot_read(folder, error) from error
 
 
-def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[str, ...]:
-    """List the names, in order, of pictures and films in a folder that are not read, if `fits` accepts them."""
+def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """List the names, in order, of what is not read in a folder, if `fits` accepts them: pictures, films to import.
+
+    Films of a kind that is not imported either are among the pictures: both are to be converted.
+    """
     if folder is None or not folder.is_dir():
-        return ()
+        return (), ()
     try:
-        names = [path.name for path in folder.iterdir() if path.suffix.lower() in _NOT_READ and fits(path.name)]
+        names = sorted(path.name for path in folder.iterdir() if fits(path.name))
     except OSError as error:
         raise cannot_read(folder, error) from error
-    return tuple(sorted(names))
+    pictures, films = (
+        tuple(name for name in names if Path(name).suffix.lower() in endings) for endings in (_NOT_READ, FILMS)
+    )
+    return pictures, films
 
 
 def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
     """Note pictures and films in a folder that are not read, if `fits` accepts their names; () if none."""
-    names = names_not_read(folder, fits)
-    if folder is None or not names:
-        return ()
-    return (note_of("set.not_read", n=len(names), folder=folder.name, names=names[:NAMES_SHOWN]),)
+    codes = ("set.not_read", "set.films_not_read")
+    return tuple(
+        note_of(code, n=len(names), folder="" if folder is None else folder.name, names=names[:NAMES_SHOWN])
+        for code, names in zip(codes, names_not_read(folder, fits), strict=True)
+        if names
+    )
 
 
 def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:

@@ -104,7 +104,7 @@ def test_a_film_in_a_folder_without_pictures_is_found_and_of_several_one_is_to_b
     cv2.imwrite(str(tmp_path / "a.png"), sweep(1)[0])
     plan = plan_import(ImportRequest(scan=Where(tmp_path)))
     assert [one.source.name for one in plan.pictures] == ["a.png"]
-    assert codes(plan.notes) == ["set.not_read"]
+    assert codes(plan.notes) == ["set.films_not_read"]
 
 
 def test_a_picture_of_the_fan_alone_goes_with_a_film_if_it_has_its_size(tmp_path, film):

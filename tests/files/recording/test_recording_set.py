@@ -279,22 +279,33 @@ def test_the_picture_with_the_fan_off_may_be_named_in_capitals(folder, name):
     assert [(p.name, p.off and p.off.name) for p in open_set(folder).planes] == [("p1", name), ("p2", None)]
 
 
-def test_a_film_in_the_place_of_pictures_is_told(folder):
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("sweep.MP4", r"import the frames of sweep\.MP4"),
+        ("sweep.apng", r"import the frames of sweep\.apng"),
+        ("sweep.wmv", r"convert sweep\.wmv to png"),
+        ("sweep.mpg", r"convert sweep\.mpg to png"),
+    ],
+)
+def test_a_film_in_the_place_of_pictures_is_told_with_what_can_be_done_with_it(folder, name, advice):
     for path in (folder / "scan").iterdir():
         path.unlink()
-    (folder / "scan" / "sweep.MP4").write_bytes(b"film")
-    with pytest.raises(InputError, match=r"there are no frames of a scan; convert sweep\.MP4 to png"):
+    (folder / "scan" / name).write_bytes(b"film")
+    with pytest.raises(InputError, match=rf"there are no frames of a scan; {advice}\.$"):
         require_scan(open_set(folder))
 
 
 def test_films_and_pictures_that_are_not_read_are_told_beside_those_that_are(folder):
-    for name in ("one.webp", "two.mov", "notes.txt"):
+    for name in ("one.webp", "two.mov", "three.MPG", "four.apng", "notes.txt"):
         (folder / "camera" / name).write_bytes(b"x")
     found = open_set(folder)
-    (note,) = found.not_read("camera")
-    assert str(note).startswith("2 files in camera are of a kind that is not read (one.webp, two.mov)")
+    assert [str(note) for note in found.not_read("camera")] == [
+        "2 files in camera are of a kind that is not read (one.webp, three.MPG): convert them to png.",
+        "2 films in camera are not read (four.apng, two.mov): import the frames of one.",
+    ]
     assert found.not_read("scan") == ()
-    assert names_not_read(found.folders["camera"]) == note.values["names"]
+    assert names_not_read(found.folders["camera"]) == (("one.webp", "three.MPG"), ("four.apng", "two.mov"))
 
 
 def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):
@@ -330,7 +341,7 @@ def test_pictures_of_known_planes_are_no_frames_and_are_told_apart_by_their_name
     assert PictureReader(found).read_target(first).shape == (30, 40)
 
 
-def test_a_stated_board_takes_its_numbered_pictures_and_needs_none_of_its_own(folder):
+def test_a_stated_board_takes_its_numbered_pictures_and_is_a_known_plane_without_one(folder):
     rig = replace(
         default_rig(),
         known_planes={"wall": KnownPlaneTarget(Rectangle(250.0, 150.0)), "a_2": KnownPlaneTarget(Rectangle(9.0, 8.0))},
@@ -341,7 +352,8 @@ def test_a_stated_board_takes_its_numbered_pictures_and_needs_none_of_its_own(fo
     assert [plane.print_of for plane in found.known_planes] == ["plane_target", "a_2", "wall"]
     assert found.known_planes[2].target == Rectangle(250.0, 150.0)
     (folder / "scan" / "planes" / "wall_2.png").unlink()
-    assert open_set(folder).known_planes[2].pictures == (), "it is seen in the pictures of the scan"
+    wall = open_set(folder).known_planes[2]
+    assert (wall.name, wall.target, wall.pictures) == ("wall", Rectangle(250.0, 150.0), ())
 
 
 def test_a_board_of_which_nothing_is_stated_is_refused_when_a_scan_is_measured(folder):
