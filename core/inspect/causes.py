@@ -99,8 +99,16 @@ OF_TARGET = frozenset(
 """What the warmth of the calibration target does: the same to all that is measured with one calibration."""
 FROM_BELOW = frozenset((Cause.LIGHT_FROM_BELOW, Cause.LIGHT_FROM_BELOW_ASSUMED))
 """Light from below the surface that is not seen."""
-OF_SCAN = frozenset((Cause.KNOWN_POSE,))
-"""What errs anew in every scan, and so is not the same as in a master's."""
+OF_BOARDS = frozenset(
+    (
+        Cause.KNOWN_POSE,
+        Cause.KNOWN_FLATNESS,
+        Cause.KNOWN_FLATNESS_ASSUMED,
+        Cause.KNOWN_SIZE,
+        Cause.KNOWN_SIZE_ASSUMED,
+    )
+)
+"""What errs in the known planes of a scan: a calibration's id does not tell whether a master's scan had the same."""
 CHANGES = frozenset((Cause.CHANGE, Cause.CHANGE_ASSUMED, Cause.CHANGE_CHARTED))
 """What may have changed since the calibration, where nothing on the day of the scan has measured it."""
 

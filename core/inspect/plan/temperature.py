@@ -23,7 +23,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.findings.table import note_of
-from core.inspect.causes import CALIBRATIONS, OF_SCAN, OF_TARGET, Cause
+from core.inspect.causes import CALIBRATIONS, OF_BOARDS, OF_TARGET, Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
 from core.inspect.plan.kinds import expands
@@ -164,7 +164,7 @@ def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contrib
     """The budget of a part's length less the master's."""
     of_master = dict(master.budget)
     rows = []
-    alike = (cause for cause in (*CALIBRATIONS.values(), *OF_TARGET) if cause not in OF_SCAN)
+    alike = (cause for cause in (*CALIBRATIONS.values(), *OF_TARGET) if cause not in OF_BOARDS)
     cancelling = tuple(alike) if master.same_calibration else ()
     own = [u for source, u in master.budget if source not in cancelling]
     for row in budget:

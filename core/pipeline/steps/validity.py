@@ -39,9 +39,11 @@ def history_of(rig: Rig, calibration_id: str) -> RigHistory:
 def facts_of_the_day(work: Workspace, calibration: Calibration, *, checked: bool = False) -> ScanFacts:
     """Collect the facts, of calibrations and checks, that decide whether results of this recording prove conformity.
 
-    `checked`: known planes in the scan are its check, and have passed it. Else the check nearest in time counts, before
-    the recording or after it. What is not stated has no limit. That the target's points lie off alike in all poses
-    counts no more once U contains what an artefact has left possible.
+    The check nearest in time counts, before the recording or after it. `checked`: known planes in the scan have passed;
+    that stands in for a check by pictures that is missing or has lapsed. It lifts none that failed, nor an artefact's:
+    fan and boards may share an error of size, which an artefact shows and they do not. What is not stated has no limit.
+    That the target's points lie off alike in all poses counts no more once U contains what an artefact has left
+    possible.
     """
     recording_set, fan = work.recording_set, calibration.fan
     when = taken_at(recording_set.frames)
@@ -54,12 +56,13 @@ def facts_of_the_day(work: Workspace, calibration: Calibration, *, checked: bool
     if fan.readjusted is not None:
         checks = (*checks, _as_check(fan.readjusted, calibration.id))
     nearest = _nearest(checks, when)
-    if not checked and nearest is not None and nearest.verdict == "failed":
+    if nearest is not None and nearest.verdict == "failed":
         failed = note_of("validity.check_failed", date=nearest.taken_at.astimezone())
         return replace(facts, of_the_day=(Doubt.of(failed),))
+    stood_in = checked and not (nearest is not None and nearest.artefact)
     lapsed = (
         _calibration_lapsed(recording_set, work.record(), when),
-        None if checked else _check_lapsed(recording_set.rig, nearest, when),
+        None if stood_in else _check_lapsed(recording_set.rig, nearest, when),
     )
     artefact = _passed_artefact(recording_set.rig, checks, when)
     if artefact is not None and _left_possible(artefact) <= fan.scale_sd:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.inspect.causes import Cause
+from core.inspect.causes import CALIBRATIONS, Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
@@ -117,6 +117,17 @@ def test_the_targets_warmth_is_the_same_for_part_and_master():
     rows = {one.source: one.u_mm for one in compared(warm, master, 2.0).budget}
     assert rows[Cause.SCALE_TEMPERATURE_ASSUMED] == 0
     assert rows[Cause.MASTER_MEASURED] == 0.004
+
+
+@pytest.mark.parametrize("cause", [cause for source, cause in CALIBRATIONS.items() if "known" in source])
+def test_what_errs_in_known_planes_never_cancels_as_the_masters_may_have_been_others(cause):
+    part, master = (
+        replace(length(), budget=(Contribution(cause, 0.008),)),
+        replace(MASTER, budget=((cause, 0.008),)),
+    )
+    rows = {one.source: one.u_mm for one in compared(part, master, 2.0).budget}
+    assert rows[cause] == 0.008
+    assert rows[Cause.MASTER_MEASURED] == 0.008
 
 
 def test_a_master_measured_with_another_calibration_cancels_nothing():

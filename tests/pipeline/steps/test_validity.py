@@ -46,17 +46,18 @@ def checked(days, p=0.4):
     store_check(ID, replace(PastCheck.of(check(p)), taken_at=NOON - timedelta(days=days), pictures_id=f"{days}"))
 
 
-def doubts(work, calibration):
-    """Codes of all doubts of a scan in which nothing moved or changed."""
-    facts = replace(facts_of_the_day(work, calibration), **dict.fromkeys(OF_SCAN, False))
+def doubts(work, calibration, *, by_planes=False):
+    """Codes of all doubts of a scan in which nothing moved or changed; its known planes have passed `by_planes`."""
+    facts = replace(facts_of_the_day(work, calibration, checked=by_planes), **dict.fromkeys(OF_SCAN, False))
     return [doubt.note.code for doubt in facts.doubts]
 
 
-def doubt(work, readjusted=None):
+def doubt(work, readjusted=None, *, by_planes=False):
     fan = SimpleNamespace(
         readjusted=readjusted, scale_assumed=False, scale_sd=0.0, converged=True, points_off_alike=False
     )
-    return ", ".join(doubts(work, SimpleNamespace(id=ID, fan=fan, camera=SimpleNamespace(converged=True))))
+    calibration = SimpleNamespace(id=ID, fan=fan, camera=SimpleNamespace(converged=True))
+    return ", ".join(doubts(work, calibration, by_planes=by_planes))
 
 
 @dataclass(frozen=True)
@@ -230,6 +231,24 @@ def test_the_nearest_check_failed(tmp_path):
     assert doubt(work) == "", "it was set right before the recording"
     checked(-0.5, p=1e-6)
     assert doubt(work) == "validity.check_failed", "hours after the recording is nearer than the day before"
+
+
+def test_planes_that_agree_stand_in_for_a_check_by_pictures_that_is_missing_or_has_lapsed(tmp_path):
+    work = recorded(tmp_path, Validity(check_days=1))
+    assert doubt(work, by_planes=True) == ""
+    checked(3)
+    assert doubt(work, by_planes=True) == ""
+
+
+def test_planes_that_agree_lift_no_failed_check_and_none_of_an_artefact(tmp_path):
+    """Fan and a board of the same print share its error of size and agree all the same."""
+    work = recorded(tmp_path, Validity(check_days=1))
+    artefact_measured(2)
+    assert doubt(work, by_planes=True) == "validity.check_lapsed"
+    artefact_measured(0.5, verdict="failed")
+    assert doubt(work, by_planes=True) == "validity.check_failed"
+    checked(0.25, p=1e-6)
+    assert doubt(work, by_planes=True) == "validity.check_failed"
 
 
 def test_a_history_that_cannot_be_read_is_no_passed_check(tmp_path):
