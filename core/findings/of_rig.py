@@ -54,6 +54,8 @@ ROWS = (
     Finding("check.another_day", Weight.CAUTION, Effect.NONE,
             "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its "
             "day and were not used; check again."),
+    Finding("check.without_fan", Weight.INFORMATION, Effect.NONE,
+            "The pictures of the check are not used: they check a fan, and the rig has none."),
     Finding("check.pose_left_out", Weight.CAUTION, Effect.NONE,
             "Picture {pose} of the check says nothing: {reason}."),
     Finding("check.leaves_much", Weight.CAUTION, Effect.NONE,

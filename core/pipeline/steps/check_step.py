@@ -194,8 +194,11 @@ def check_paths(recording_set: RecordingSet) -> list[Path]:
 def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSet:
     """Remove from a set those pictures of its interim check that camera and fan were already re-adjusted by.
 
-    They cannot check what was made with them, and are known again by their content.
+    They cannot check what was made with them, and are known again by their content. Without a fan no picture is left:
+    there are no light planes to be where they were.
     """
+    if not fan.fan.lines:
+        return replace(recording_set, check=())
     used: set[str] = set()
     known = fan.readjusted
     while known is not None:
@@ -240,16 +243,15 @@ def since_calibration(
     by_planes
         Whether known planes in the scan show that camera and fan are as calibrated: a passed check of that hour.
     """
-    recording_set = fresh_check(recording_set, calibration.fan)
-    apart = _days_apart(recording_set)
-    if apart <= SAME_DAY:
-        return judged(
-            recording_set, calibration, check, of_measured, at_scan=True, scanned=scanned, by_planes=by_planes
-        ).change
-    unchecked = replace(recording_set, check=())
-    change = judged(unchecked, calibration, (), of_measured, at_scan=True, scanned=scanned, by_planes=by_planes).change
-    other_day = note_of("check.another_day", days=apart)
-    return replace(change, left_out=(other_day,))
+    fresh = fresh_check(recording_set, calibration.fan)
+    apart = _days_apart(fresh)
+    unused: tuple[Message, ...] = ()
+    if recording_set.check and not calibration.fan.fan.lines:
+        unused = (note_of("check.without_fan"),)
+    elif apart > SAME_DAY:
+        fresh, unused = replace(fresh, check=()), (note_of("check.another_day", days=apart),)
+    change = judged(fresh, calibration, check, of_measured, at_scan=True, scanned=scanned, by_planes=by_planes).change
+    return replace(change, left_out=(*unused, *change.left_out))
 
 
 def _days_apart(recording_set: RecordingSet) -> float:
