@@ -85,10 +85,12 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
     light = float(np.median(difference[::16, ::16]))
     worst, lost = 0.0, False
     for piece in fan:
-        uv, width, strength = piece.uv[::3].copy(), piece.width[::3], piece.strength[::3]
+        piece = piece.select(np.arange(0, len(piece), 3))
+        piece = piece.select(np.flatnonzero(piece.strength > 0))  # what has none tells nothing
+        uv, width, strength = piece.uv.copy(), piece.width, piece.strength
         if len(uv) < 20:
             continue
-        offset = piece.normal[::3] * width[:, None]
+        offset = piece.normal * width[:, None]
         flank_plus = _sample(difference, uv + offset)
         flank_minus = _sample(difference, uv - offset)
         centre = _sample(difference, uv)
@@ -102,25 +104,35 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
 def fan_stretches(fan: Sequence[Centreline]) -> list[tuple[int, slice]]:
     """Divide the fan's centrelines into stretches of STRETCH points, in each of which its light is watched.
 
-    Each is the index of a centreline and the slice of its points; a shorter rest of a centreline is in none.
+    Each is the index of a centreline and the slice of its points; a shorter rest of a centreline is in none, nor is one
+    with points without strength, whose shift cannot be told.
     """
     return [
-        (number, slice(first, first + STRETCH))
+        (number, slice(STRETCH * k, STRETCH * (k + 1)))
         for number, piece in enumerate(fan)
-        for first in range(0, len(piece) - STRETCH + 1, STRETCH)
+        for k in np.flatnonzero(_lit(piece)).tolist()
     ]
+
+
+def _lit(piece: Centreline) -> NDArray[np.bool_]:
+    """Of each stretch of a centreline, whether all of its points have strength."""
+    return np.asarray((_by_stretch(piece.strength) > 0).all(axis=1))
+
+
+def _by_stretch(values: Array) -> Array:
+    """Values (N,) of a centreline's points by stretches (K, STRETCH), without the shorter rest."""
+    return values[: len(values) // STRETCH * STRETCH].reshape(-1, STRETCH)
 
 
 def _shifts(difference: NDArray[np.int16] | NDArray[np.float32], fan: Sequence[Centreline]) -> Array:
     """Median shift (C,) in px of each stretch along its normals."""
     found = [np.zeros((0, STRETCH))]
     for piece in fan:
-        count = len(piece) // STRETCH * STRETCH
-        width = piece.width[:count]
-        offset = piece.normal[:count] * width[:, None]
-        flanks = _sample(difference, piece.uv[:count] + offset) - _sample(difference, piece.uv[:count] - offset)
-        shift = flanks * width / (2 * np.exp(-0.5) * piece.strength[:count])
-        found.append(shift.reshape(-1, STRETCH))
+        lit = _lit(piece)
+        offset = piece.normal * piece.width[:, None]
+        flanks = _sample(difference, piece.uv + offset) - _sample(difference, piece.uv - offset)
+        slope = 2 * np.exp(-0.5) * _by_stretch(piece.strength)[lit]
+        found.append(_by_stretch(flanks * piece.width)[lit] / slope)
     return np.asarray(np.median(np.concatenate(found), axis=1))
 
 

@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.image.background import quantile_reference, sample_indices
 from core.image.stripes.centreline import Centreline
-from core.scan.features.reference import check_reference, picture_difference
+from core.scan.features.reference import check_reference, fan_stretches, picture_difference
 
 WIDTH = 2.0
 
@@ -41,6 +43,21 @@ def test_a_sweep_across_a_resting_object_is_no_movement():
     check = check_reference(picture(sweep_at=150.0, seed=1) - picture(seed=2), [fan_line()])
     assert check.shift_px < 0.05
     assert not check.lost
+
+
+@pytest.mark.parametrize("without", [slice(None), slice(0, 360, 2), slice(7, 8)])
+def test_light_without_strength_tells_of_no_shift(without):
+    line = fan_line()
+    strength = line.strength.copy()
+    strength[without] = 0.0
+    faint = replace(line, strength=strength)
+    with np.errstate(divide="raise", invalid="raise"):
+        check = check_reference(picture(seed=1) - picture(seed=2), [faint, line])
+    stretches = fan_stretches([faint, line])
+    assert check.shift_px < 0.05 and not check.lost
+    assert len(check.shifts_px) == len(stretches) and np.abs(check.shifts_px).max() < 0.2
+    lit = {7: 6}.get(without.start, 0)
+    assert [number for number, _ in stretches] == [0] * lit + [1] * 7
 
 
 def test_light_that_is_gone_is_noticed():
