@@ -17,6 +17,7 @@ from tests.workbench.pages import scan_cases
 from workbench.main_window import MainWindow
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.scan.stage import Stage as ScanStage
+from workbench.pages.scan.words import NO_LIVE_SCAN, frame_sentence
 
 
 def without_fan(folder: Path) -> Project:
@@ -79,3 +80,18 @@ def test_a_fan_that_is_stated_again_is_wanted_again(opened: MainWindow) -> None:
     assert model.states["planes"].state == "ready"
     assert model.states["scan"].sentence.startswith("First: calibrate the laser planes")
     assert "planes" in left_to_do(model.project, model.results)
+
+
+def test_without_a_recording_its_folder_is_asked_for(opened: MainWindow, qtbot: Any) -> None:
+    model = opened.model
+    model.edit("no scan", replace(model.project, sources=replace(model.project.sources, scan="")))
+    opened.go_to("scan")
+    page: Any = opened.pages["scan"]
+    qtbot.waitUntil(lambda: page.picture.image._empty.message == NO_LIVE_SCAN)
+    assert page.card.words.text() == NO_LIVE_SCAN and page.source.mode == "folder"
+
+
+def test_a_frame_is_not_said_to_cross_no_line_of_the_fan() -> None:
+    record = scan_cases.records()[1]
+    said = frame_sentence(1, 6, record.name, record, None, has_fan=False)
+    assert "fan" not in said and said.endswith("20 crossings with other sweeps, 1 left out.")

@@ -58,7 +58,9 @@ class FrameBar(QWidget):
         if scrub.current:
             stages = scrub.stages if scrub.up_to_date else None
             record = p.record_of(scrub.current)
-            said = words.frame_sentence(scrub.index, len(names), short(scrub.current), record, stages)
+            said = words.frame_sentence(
+                scrub.index, len(names), short(scrub.current), record, stages, has_fan=p.has_fan
+            )
             self.said.setText(tr("{frame} Marked.", frame=said) if scrub.current in p.work.marked else said)
         self.next_mark.setVisible(bool(p.work.marked))
         why_not = "" if p.record_of(scrub.current) is not None else tr("Measure the scan first.")

@@ -108,7 +108,7 @@ class ScanCard(StageCard):
         p = self._presenter
         begin = tr("Sweep the part with a live source, or choose the folder of a recording.")
         if not p.has_fan:
-            begin = tr("Choose the folder of a recording with known planes.")
+            begin = tr(words.NO_LIVE_SCAN)
         if p.calibrated:
             return begin
         return tr("{begin} It can be measured once its calibrations are accepted.", begin=begin)

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from core.image.stripes.centreline import Centreline
 from core.pipeline.live.events import LiveView, PlanesDetail, ScanDetail
 from workbench.language import tr
-from workbench.pages.scan import overlays
+from workbench.pages.scan import overlays, words
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views.forms.source_chooser import NextAction
 from workbench.views.image.view import ImageView
@@ -139,10 +139,8 @@ class ScanPicture(QWidget):
         self._shown = kind
 
     def _empty(self) -> None:
-        self._clear(
-            tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
-            self._next_action(),
-        )
+        how = tr("Record a scan with a live source, or choose the folder of a recording (or drop one here).")
+        self._clear(how if self._presenter.has_fan else tr(words.NO_LIVE_SCAN), self._next_action())
 
     def _clear(self, message: str, next_action: NextAction | None = None) -> None:
         self._shown = self._fan = None

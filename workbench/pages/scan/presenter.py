@@ -24,7 +24,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.scan import stability
+from workbench.pages.scan import stability, words
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough, is_recording
@@ -376,7 +376,7 @@ class ScanPresenter(StepPresenter):
         return {
             WhyNot.NOTHING: "",
             WhyNot.MEASURING: tr("The scan is being measured; wait for it, or cancel it."),
-            WhyNot.NO_FAN: tr("A live scan needs a fan; choose the folder of a recording with known planes."),
+            WhyNot.NO_FAN: tr(words.NO_LIVE_SCAN),
             WhyNot.CHECK_LIVE: tr("Pictures of the check are being taken."),
             WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
         }[disabled_reasons(self._facts()).record]

@@ -6,13 +6,16 @@ import math
 
 import numpy as np
 
-from core.messages import Message
+from core.messages import Message, label
 from core.report.facts.fact import Fact
 from core.report.facts.of_scan import scan_facts
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import named, sentence, text_of, tr
 from workbench.pages.words import count, percent, sigma
+
+NO_LIVE_SCAN = label("A live scan needs a fan; choose the folder of a recording with known planes.")
+"""What to do where the rig has no fan."""
 
 
 def facts(look: ShownScan | None) -> tuple[Fact, ...]:
@@ -40,11 +43,22 @@ def _what_became(record: FrameRecord | None, seen: tuple[int, Message | None] | 
     return ""
 
 
-def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None) -> str:
+def frame_sentence(
+    place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None, *, has_fan: bool = True
+) -> str:
     """Write the sentence on the current frame: its number, its points, or why it gives none."""
     start = tr("Frame {number} of {total} ({name})", number=place + 1, total=total, name=name)
     if stages is not None and stages.left_out and (record is None or record.used):
         start = tr("{frame}, left out by hand", frame=start)
+    if record is not None and record.used and not has_fan:
+        return tr(
+            "{frame}: {points} points, median σ {sigma}; {sweeps} crossings with other sweeps, {left_out} left out.",
+            frame=start,
+            points=count(record.points),
+            sigma=sigma(record.sigma_mm),
+            sweeps=record.sweep_crossings,
+            left_out=record.left_out,
+        )
     if record is not None and record.used:
         return tr(
             "{frame}: {points} points, median σ {sigma}; {crossings} crossings with {lines} fan lines, {sweeps} with "
