@@ -12,12 +12,13 @@ import pytest
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, Project, Sources, new_project
 from core.files.project.keys import finished, left_to_do
+from core.scan.preview.shown import stripes_alone
 from core.states import NO_FAN
 from tests.workbench.pages import scan_cases
 from workbench.main_window import MainWindow
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.scan.stage import Stage as ScanStage
-from workbench.pages.scan.words import NO_LIVE_SCAN, frame_sentence
+from workbench.pages.scan.words import NO_LIVE_SCAN, frame_line, frame_sentence
 
 
 def without_fan(folder: Path) -> Project:
@@ -95,3 +96,16 @@ def test_a_frame_is_not_said_to_cross_no_line_of_the_fan() -> None:
     record = scan_cases.records()[1]
     said = frame_sentence(1, 6, record.name, record, None, has_fan=False)
     assert "fan" not in said and said.endswith("20 crossings with other sweeps, 1 left out.")
+
+
+def test_while_it_is_measured_a_frame_shows_its_stripe_and_claims_no_points(opened: MainWindow, qtbot: Any) -> None:
+    opened.go_to("scan")
+    page: Any = opened.pages["scan"]
+    qtbot.waitUntil(lambda: page.presenter.stage is ScanStage.RECORDED)
+    seen = stripes_alone(1, scan_cases.name_of(1), None, scan_cases.preview(1).centrelines)
+    detail = replace(scan_cases.detail(1), preview=seen, fan_lines=(), share=0.0)
+    page.picture.show_measured(detail, np.full(scan_cases.SIZE[::-1], 40, np.uint8), 1)
+    page.running.show_detail(detail, float(scan_cases.SIZE[0]))
+    assert set(page.picture.image.layer_names()) == {"sweep"}
+    assert page.running.covered.text() == ""
+    assert frame_line(None, (0, None)) == ""

@@ -243,7 +243,8 @@ class RunningPanel(QWidget):
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
         """Show the hand's motion and the coverage at one frame; `width_px` is its width. None shows nothing."""
         preview = detail.preview if detail is not None and detail.stage == "scanning" else None
-        self.covered.setText(words.covered_sentence(detail.share) if detail is not None else "")
+        located = preview is None or not math.isnan(preview.condition)
+        self.covered.setText(words.covered_sentence(detail.share) if detail is not None and located else "")
         self.hints.set_hints([text_of(hint) for hint in preview.hints] if preview is not None else ())
         if preview is None or not preview.centrelines:
             self.condition.set_value(None)

@@ -88,8 +88,10 @@ class ScanPicture(QWidget):
         self._show_detail(detail)
 
     def _show_detail(self, detail: ScanDetail) -> None:
-        calibrated, preview = self._presenter.calibrated, detail.preview
-        overlays.show_coverage(self.image, detail.cells, detail.lit)
+        p, preview = self._presenter, detail.preview
+        calibrated = p.calibrated and p.has_fan  # without one a frame by itself gives no points
+        if p.has_fan:
+            overlays.show_coverage(self.image, detail.cells, detail.lit)
         self._show_fan(detail.fan_lines, numbered=calibrated)
         pieces = preview.centrelines if preview is not None and detail.stage == "scanning" else ()
         overlays.show_sweep(

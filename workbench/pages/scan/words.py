@@ -39,7 +39,10 @@ def _what_became(record: FrameRecord | None, seen: tuple[int, Message | None] | 
         return tr("{count} points", count=count(record.points))
     if seen is not None:
         points, reason = seen
-        return text_of(reason) if reason else tr("{count} points in the preview", count=count(points))
+        if reason:
+            return text_of(reason)
+        if points:
+            return tr("{count} points in the preview", count=count(points))
     return ""
 
 

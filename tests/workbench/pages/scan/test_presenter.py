@@ -450,7 +450,7 @@ def test_without_calibrations_a_recording_is_kept_for_later(presenter, lane, mea
     accept(presenter)
     record(presenter, lane, scan_folder, qtbot)
     assert not measuring.busy
-    assert any("once camera and laser planes are accepted" in notice.text for notice in presenter.bench.notices.all)
+    assert any("once its calibrations are accepted" in notice.text for notice in presenter.bench.notices.all)
     assert presenter.blocker() == "Accept a camera calibration first."
 
 
