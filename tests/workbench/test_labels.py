@@ -176,7 +176,7 @@ def test_a_rigs_history_shows_the_digits_of_its_card(words: Words) -> None:
     in_table = {words.known(one.label): said for one, said in zip(table.columns, table.texts(words)[0], strict=True)}
     for name in map(words.known, (ALLOWED_FROM, ALLOWED_TO)):
         assert in_table[name] == of_card[name].parts(words)[0]
-    step = next(fact for fact in of_card.values() if fact.sd is not None)
+    step = next(fact for fact in of_card.values() if fact.U is not None)
     assert in_table[words.known("off by")] == step.parts(words)[0] == words.fixed(0.05, 2, signed=True)
 
 

@@ -69,6 +69,7 @@ def full_project():
             part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5,
                       TargetTemperature(23.0, 0.5, 24e-6, 1e-6)),
             certificates={"plane_target": Certificate("D-K 7", "Labor Nord", date(2028, 3, 1))},
+            simulated=True,
             known_planes={"wall": KnownPlaneTarget(Rectangle(250.0, 150.0, 10.0), BoardTolerance(0.3, 1e-3), 5.0)}),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
