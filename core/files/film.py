@@ -41,6 +41,9 @@ PERHAPS_MOVING = frozenset({".png", ".webp"})
 """Endings (lower case) of pictures, some of which hold several frames."""
 _MISSING_AT_MOST = 2
 """Frames fewer than a film says it has that are no damage: some programs count one that is never shown."""
+_SOUND_LONGER_S = 1.0
+"""By so much a sound track may go on beyond the last frame: a duration of the whole film then says too many frames. A
+film that was cut without coding it anew keeps about as much before its beginning that is never shown."""
 _ENCODED_EVERY = 32
 """One of so many frames tells how large all are as PNG."""
 _LOSSLESS = frozenset({"FFV1", "HFYU", "FFVH", "MPNG", "PNG"})
@@ -75,6 +78,7 @@ class Film:
     """Film that was read from its first frame to its last.
 
     `size` is its width and height in px; `frames` are those that are no copy of the one before: `doubled` were.
+    `missing` are how many fewer it has than its duration says; 0 if it lists its frames.
     `coding` is its name, `loss` what that has lost; None if nothing. A film is `grey` if no frame has colours.
     `png_bytes` is about the room that the frames take.
     """
@@ -87,6 +91,7 @@ class Film:
     loss: FilmLoss | None
     grey: bool
     png_bytes: int
+    missing: int = 0
 
 
 def is_film(path: Path) -> bool:
@@ -138,7 +143,8 @@ def read_film(path: Path, progress: Progress = silent) -> tuple[Film, list[Pictu
         frames = [replace(frame, time_s=None) for frame in frames]
     loss = _palette_loss(sample) if opened.coding == "GIF" else opened.loss
     room = int(np.mean(encoded) * len(frames))
-    return Film(path, size, tuple(frames), read - len(frames), opened.coding, loss, grey, room), sample
+    missing = opened.told - read if read < opened.told - _MISSING_AT_MOST else 0
+    return Film(path, size, tuple(frames), read - len(frames), opened.coding, loss, grey, room, missing), sample
 
 
 def film_pictures(film: Film) -> Iterator[tuple[FilmFrame, Picture]]:
@@ -182,12 +188,16 @@ def film_picture(path: Path, number: int) -> Picture:
 
 @dataclass(frozen=True, slots=True)
 class _Opened:
-    """A film as its decoder gives it, and how many frames it says it has; 0 if it does not say."""
+    """A film as its decoder gives it, and how many frames it says it has; 0 if it does not say.
+
+    `at_most_missing` of them may be missing from a whole film.
+    """
 
     told: int
     coding: str
     loss: FilmLoss | None
     shown: Iterator[_Shown]
+    at_most_missing: int = _MISSING_AT_MOST
 
 
 def _opened(path: Path, first: int = 0) -> _Opened:
@@ -200,12 +210,15 @@ def _opened(path: Path, first: int = 0) -> _Opened:
         raise cannot_read(path, error) from error
     if head.startswith((b"GIF8", b"\x89PNG")) or (head.startswith(b"RIFF") and head[8:12] == b"WEBP"):
         return _by_pillow(path, first)
-    if (head.startswith(b"RIFF") and head[8:12] == b"AVI ") or head.startswith(_EBML) or head[4:8] in _FIRST_BOXES:
-        return _by_ffmpeg(path, first)
+    if head.startswith(b"RIFF") and head[8:12] == b"AVI ":
+        return _by_ffmpeg(path, first, counted=True)
+    if head.startswith(_EBML) or head[4:8] in _FIRST_BOXES:
+        return _by_ffmpeg(path, first, counted=False)
     raise _unreadable(path)
 
 
-def _by_ffmpeg(path: Path, first: int) -> _Opened:
+def _by_ffmpeg(path: Path, first: int, *, counted: bool) -> _Opened:
+    """By OpenCV, whose number of frames is that of the film's list, or its duration times its rate if not `counted`."""
     capture = cv2.VideoCapture(str(resolved(path)), cv2.CAP_FFMPEG)
     if not capture.isOpened():
         raise _ends_early(path, 0, 0) if _is_cut(path) else _unreadable(path)
@@ -227,7 +240,8 @@ def _by_ffmpeg(path: Path, first: int) -> _Opened:
         finally:
             capture.release()
 
-    return _Opened(max(told, 0), coding, _loss_of(path, coding), shown())
+    spare = 0 if counted else int(_SOUND_LONGER_S * max(capture.get(cv2.CAP_PROP_FPS), 0.0))
+    return _Opened(max(told, 0), coding, _loss_of(path, coding), shown(), max(spare, _MISSING_AT_MOST))
 
 
 def _by_pillow(path: Path, first: int) -> _Opened:
@@ -302,7 +316,7 @@ def _rising(times: Sequence[float | None]) -> bool:
 
 def _require_whole(path: Path, opened: _Opened, read: int) -> None:
     """InputError if a film that was read to its end is not whole."""
-    if read < opened.told - _MISSING_AT_MOST or _is_cut(path):
+    if read < opened.told - opened.at_most_missing or _is_cut(path):
         raise _ends_early(path, min(read, opened.told - 1) if opened.told else read, opened.told)
     if not read:
         raise InputError(

@@ -10,7 +10,7 @@ from core.files.compression import FilmLoss, compression_of
 from core.files.film import film_picture, film_pictures, film_png, is_film, read_film
 from core.files.jpeg import compression_by
 from core.files.pictures import decode_colours
-from tests.films import sweep, write_film
+from tests.films import say_longer, sweep, write_film
 
 KINDS = [
     *(
@@ -139,6 +139,31 @@ def test_a_film_that_is_too_long_is_refused_before_it_is_read(tmp_path, monkeypa
     monkeypatch.setattr(module, "FILM_FRAMES", 5)
     with pytest.raises(InputError, match="more than 5 frames"):
         read_film(write_film(tmp_path / "a.avi", sweep()))
+
+
+def test_a_whole_film_whose_sound_is_longer_than_its_frames_is_read(tmp_path):
+    path = say_longer(write_film(tmp_path / "a.mkv", sweep(60), "FFV1", rate=30.0), 0.2)
+    film, _ = read_film(path)
+    assert (len(film.frames), film.missing) == (60, 6)
+    plain = write_film(tmp_path / "b.mkv", sweep(60), "FFV1", rate=30.0)
+    assert read_film(plain)[0].missing == 0
+
+
+def test_a_film_that_lacks_more_than_a_sound_track_explains_is_refused(tmp_path):
+    path = say_longer(write_film(tmp_path / "a.mkv", sweep(60), "FFV1", rate=30.0), 1.2)
+    with pytest.raises(InputError, match=r"60 of its 96 frames can be read"):
+        read_film(path)
+
+
+def test_the_count_of_a_film_that_lists_its_frames_is_binding(tmp_path):
+    path = write_film(tmp_path / "a.avi", sweep(60), "FFV1", rate=30.0)
+    data = bytearray(path.read_bytes())
+    at = data.index(b"strh") + 8 + 32  # dwLength of the stream's head
+    assert int.from_bytes(data[at : at + 4], "little") == 60
+    data[at : at + 4] = (66).to_bytes(4, "little")
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"60 of its 66 frames can be read"):
+        read_film(path)
 
 
 def test_reading_can_be_cancelled(tmp_path):

@@ -257,7 +257,16 @@ def _of_film(part: str, path: Path, reference: Path | None, progress: Progress) 
 
 
 def _notes_on_film(film: Film) -> Iterator[Message]:
-    """What is to be known of a film: frames that are the one before again, and what its coding has lost."""
+    """What is to be known of a film: frames that lack or are the one before again, and what its coding has lost."""
+    if film.missing:
+        yield Message(
+            "import.film_shorter_than_said",
+            "{name} has {frames} frames, {missing} fewer than its duration says: a longer sound track or a cut at its "
+            "beginning would explain it; otherwise frames are lost.",
+            name=film.path.name,
+            frames=len(film.frames) + film.doubled,
+            missing=film.missing,
+        )
     if film.doubled:
         yield plural_message(
             "import.film_doubled",

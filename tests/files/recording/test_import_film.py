@@ -15,7 +15,7 @@ from core.files.recording.import_plan import ImportRequest, Where, plan_import
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import default_rig, rig_to_toml
-from tests.films import sweep, write_film
+from tests.films import say_longer, sweep, write_film
 
 
 @pytest.fixture
@@ -93,6 +93,15 @@ def test_the_loss_of_a_film_is_told_and_goes_with_its_frames(tmp_path):
     assert compression_of(frame).grey == pytest.approx(5.77, abs=0.01)
     shutil.copy(frame, tmp_path / "elsewhere.png")
     assert compression_of(tmp_path / "elsewhere.png").assumed
+
+
+def test_that_a_film_says_it_is_longer_than_its_frames_is_told(tmp_path):
+    film = say_longer(write_film(tmp_path / "hand.mkv", sweep(60), "FFV1", rate=30.0), 0.2)
+    notes = plan_import(ImportRequest(scan=Where(film))).notes
+    assert [str(note) for note in notes if note.code == "import.film_shorter_than_said"] == [
+        "hand.mkv has 60 frames, 6 fewer than its duration says: a longer sound track or a cut at its beginning would "
+        "explain it; otherwise frames are lost."
+    ]
 
 
 def test_a_film_in_a_folder_without_pictures_is_found_and_of_several_one_is_to_be_named(tmp_path, film):
