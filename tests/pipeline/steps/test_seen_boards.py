@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from core.calibrate.fan.poses.target_plane import target_plane
-from core.calibrate.results import CameraCalibration
+from core.calibrate.results import NO_FAN, CameraCalibration
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import KnownPlaneTarget, rig_to_toml
 from core.pipeline.steps.scan.known_planes import see_boards
-from core.pipeline.steps.workspace import NO_FAN, Calibration
+from core.pipeline.steps.workspace import Calibration
 from core.progress import silent
 from core.simulate.effects.boards import BoardsBeside
 from core.simulate.recording import simulate_set
