@@ -56,6 +56,9 @@ ROWS = (
     Finding("scan.board_moved", Weight.CAUTION, Effect.NONE,
             "The board {board} moved between its pictures, by {mm:.2g} mm and more than noise: it is not used. Let it "
             "lie as it is from the first picture to the last frame."),
+    Finding("scan.board_warm", Weight.INFORMATION, Effect.NONE,
+            "The size of the board {board} counts as {ppm:+.0f} ppm larger than stated, by its temperature of "
+            "{celsius:.1f} °C and that of the plane target."),
     Finding("scan.board_not_met", Weight.CAUTION, Effect.NONE,
             "No sweep is seen on the board {board}: it is not used. Let sweeps cross it."),
     Finding("scan.board_off", Weight.CAUTION, Effect.NONE,

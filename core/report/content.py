@@ -290,7 +290,7 @@ class ReportContent:
     reported
         The day on which the report is made; None: it is not said, and the same content gives the same report.
     certificates
-        Of the targets, by their tables in rig.toml; of one that is not there none is stated.
+        Of targets and known planes, by their tables in rig.toml; of one that is not there none is stated.
     repeats
         Scans of the same part to be compared, in the order of measuring; this one may be among them.
     hidden

@@ -116,8 +116,11 @@ def test_every_input_is_printed_with_its_hash(data, content):
 
 def test_traceability_names_certificates_laboratories_and_days_and_what_is_not_stated(quick):
     lapsed = Certificate("D-K 7", "Labor Nord", date(2026, 1, 31))
-    known = replace(quick, certificates={"camera_target": lapsed}, hidden=frozenset(SECTIONS))
+    known = replace(
+        quick, certificates={"camera_target": lapsed, "known_planes.wall": lapsed}, hidden=frozenset(SECTIONS)
+    )
     text = words(build_report(known))
+    assert "Board wall D-K 7 Labor Nord 2026-01-31, lapsed" in text
     assert "Camera target D-K 7 Labor Nord 2026-01-31, lapsed" in text
     assert "Plane target none stated" in text and "Artefact none stated" in text
     assert replace(known, certificates={}).report_id != known.report_id

@@ -620,8 +620,10 @@ class KnownPlaneTarget:
         plane. None: its own.
     region_px
         Polygon (u, v) in pixels within which the board lies in its pictures; None: anywhere.
-    temperature, certificate
-        As of the plane target.
+    temperature
+        Of the board during the scan, by which its size counts; without one it is as warm as the plane target was.
+    certificate
+        Which stands in the report.
     """
 
     target: Target
@@ -686,6 +688,12 @@ class Rig:
     def has_fan(self) -> bool:
         """Whether the rig has a fan of fixed lines."""
         return self.lines > 0
+
+    @property
+    def all_certificates(self) -> dict[str, Certificate]:
+        """Stated certificates of targets and of known planes, by their tables: "known_planes.wall"."""
+        of_boards = {f"known_planes.{name}": one.certificate for name, one in self.known_planes.items()}
+        return {**self.certificates, **{name: one for name, one in of_boards.items() if one.stated}}
 
     @property
     def one_target(self) -> bool:

@@ -115,6 +115,13 @@ def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperatu
     )
 
 
+def larger_by_warmth(target: TargetTemperature) -> tuple[float, float]:
+    """Compute by what share a target is larger than at 20 °C, and the standard uncertainty of that share."""
+    (alpha, u_alpha), warmth = target.expansion, target.warmth
+    above = warmth.celsius - REFERENCE_C
+    return alpha * above, math.hypot(alpha * warmth.u_celsius, above * u_alpha)
+
+
 def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
     """Compute the budget rows of temperatures and expansion coefficients for a length at 20 °C; no zero rows."""
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C

@@ -130,7 +130,7 @@ def report_content(
         overlay=_overlay(pictures, scan, content.cloud) if scan else None,
         attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
         artefacts=_artefacts(work),
-        certificates=rig.certificates,
+        certificates=rig.all_certificates,
         reported=datetime.now().astimezone().date(),
     )
     content = said(content) if said else content

@@ -155,6 +155,8 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
         for name, title in TARGETS.items()
         if name in ALWAYS_TOLD or name in content.certificates
     }
+    boards = {name.partition(".")[2]: one for name, one in content.certificates.items() if name not in TARGETS}
+    traced |= {words("Board {name}", name=name): one for name, one in boards.items()}
     artefacts = {one.artefact.id: one.artefact.of_certificate for one in content.artefacts}
     traced |= {words("Artefact {name}", name=name): one for name, one in artefacts.items()} or {
         words("Artefact"): Certificate()

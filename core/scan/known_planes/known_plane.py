@@ -7,6 +7,7 @@ numbers.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -87,6 +88,21 @@ class KnownPlane:
     def displaced(self, change: Array) -> KnownPlane:
         """Add a `change` (3,) in 1/mm to τ; how well it is known stays."""
         return replace(self, pi=self.pi + change)
+
+    def enlarged(self, share: float, sd: float) -> KnownPlane:
+        """Make the plane of a board that is larger by a `share` than it was taken for, known to `sd` beside the rest.
+
+        It lies farther away by that share.
+        """
+        factor = 1 / (1 + share)
+        return replace(
+            self,
+            pi=factor * self.pi,
+            of_pose=factor**2 * self.of_pose,
+            of_flatness=factor**2 * self.of_flatness,
+            by_camera=factor * self.by_camera,
+            scale_sd=math.hypot(self.scale_sd, sd),
+        )
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -458,6 +458,7 @@ def test_known_planes_are_read_and_written_and_no_fan_is_a_statement(tmp_path):
     assert (floor.board, floor.margin_mm, floor.print_of) == (BoardTolerance(0.3, None), 12.0, "wall")
     assert floor.region_px == ((0.0, 120.0), (400.0, 120.0), (400.0, 300.0))
     assert floor.temperature.celsius == 21 and floor.certificate == Certificate("K 7")
+    assert rig.all_certificates == {"known_planes.floor-2": Certificate("K 7")}
     assert written(tmp_path, rig) == rig
     text = rig_to_toml(rig)
     assert "[known_planes.wall]" in text and "laser_fan" not in text

@@ -12,6 +12,9 @@ from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import PlanePictures
 from core.files.recording.rig import Rig
+from core.findings.table import note_of
+from core.inspect.plan.temperature import larger_by_warmth
+from core.inspect.uncertainty.part import TargetTemperature
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import HAS_FAN, Calibration, check_size
@@ -95,4 +98,18 @@ def _sought(pictures: PictureReader, board: PlanePictures, camera: Camera) -> So
     stated = board.stated
     tolerance: BoardTolerance = stated.board
     of = BoardOf(board.name, board.target, tolerance, stated.margin_mm, board.print_of, stated.region_px)
-    return seek_plane(of, read, camera)
+    return _at_its_warmth(seek_plane(of, read, camera), stated.temperature, pictures.recording_set.rig.part.target)
+
+
+def _at_its_warmth(sought: SoughtPlane, own: TargetTemperature, standard: TargetTemperature) -> SoughtPlane:
+    """The plane of a board of its `own` stated temperature, in lengths by the plane target, which is the `standard`.
+
+    At the end these lengths are put to 20 °C by the plane target's temperature. A board without a temperature is taken
+    to be as warm as that.
+    """
+    if sought.plane is None or own.celsius is None or own == standard:
+        return sought
+    (larger, sd), (of_standard, _) = larger_by_warmth(own), larger_by_warmth(standard)
+    share = larger - of_standard
+    note = note_of("scan.board_warm", board=sought.plane.name, ppm=1e6 * share, celsius=own.celsius)
+    return SoughtPlane(sought.plane.enlarged(share, sd), (*sought.notes, note))
