@@ -64,15 +64,27 @@ ROWS = (
     Finding("scan.board_off", Weight.CAUTION, Effect.NONE,
             "The board {board} moved or is bent: the fan, which agrees with the others, has it {mm:.2g} mm aside and "
             "turned by {degrees:.2g}°, {times:.1f} times what is expected. It is not used."),
+    Finding("scan.board_disagrees", Weight.CAUTION, Effect.NONE,
+            "No point of the sweeps on the board {board} agrees with fan and other boards: it is not used. It moved, "
+            "or something stands before it."),
     Finding("scan.checked_by_planes", Weight.INFORMATION, Effect.NONE,
             "Checked in this scan: the fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), so camera and "
             "fixed laser are as calibrated."),
+    Finding("scan.planes_see_little", Weight.INFORMATION, Effect.NONE,
+            "The fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), but that sees little: of usual "
+            "changes of the rig since its calibration it would show {percent:.0f} %, a picture of a check 93 %. It is "
+            "no check of camera and fixed laser."),
     Finding("scan.planes_alone", Weight.INFORMATION, Effect.NONE,
             "Measured by known planes alone, {boards:and}: {points:,} points of sweeps on them agree to {mm:.2g} mm."),
     Finding("scan.planes_disagree", Weight.GRAVE, Effect.NO_PROOF,
             "Fan and {boards:and} disagree in this scan: {mm:.2g} mm and {degrees:.2g}°, {times:.1f} times what is "
             "expected. Most likely {cause}. The scan is measured by the fan alone: check the rig with the plane "
             "target.",
+            fact="planes_disagree"),
+    Finding("scan.planes_not_tied", Weight.GRAVE, Effect.NO_PROOF,
+            "Fan and {boards:and} disagree so much in this scan that the sweeps cannot agree with both. Most likely a "
+            "board moved, or camera or fixed laser did since the calibration. The scan is measured by the fan alone: "
+            "check the rig with the plane target.",
             fact="planes_disagree"),
     # What fixes the scale of heights
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,

@@ -89,7 +89,7 @@ _MEMBERS = {
     "plane_rms": real("known planes", optional=True),
     "plane_pis": real("known planes", 3, optional=True),
     "plane_outlines": real("known planes", None, 2, optional=True),
-    "plane_check": real(2, optional=True),
+    "plane_check": real(3, optional=True),
     "plane_check_names": texts("checked planes", optional=True),
     "plane_check_off": real("checked planes", 4, optional=True),
     "speckle_uv": real("speckle points", 2, optional=True),
@@ -271,7 +271,7 @@ def _planes(arrays: Arrays) -> tuple[PlaneFit, ...]:
 
 def _packed_check(check: PlaneCheck) -> dict[str, NDArray[Any]]:
     return {
-        "plane_check": np.array([check.squares, check.freedom], dtype=np.float64),
+        "plane_check": np.array([check.squares, check.freedom, check.sees], dtype=np.float64),
         "plane_check_names": pack_texts([one.name for one in check.planes]),
         "plane_check_off": np.array([(one.mm, one.turn, one.times, one.others_p) for one in check.planes]),
     }
@@ -281,8 +281,9 @@ def _plane_check(arrays: Arrays) -> PlaneCheck | None:
     if "plane_check" not in arrays:
         return None
     names, off = unpack_texts(arrays["plane_check_names"]), arrays["plane_check_off"].tolist()
-    squares, freedom = arrays["plane_check"].tolist()
-    return PlaneCheck(tuple(PlaneOff(name, *row) for name, row in zip(names, off, strict=True)), squares, int(freedom))
+    squares, freedom, sees = arrays["plane_check"].tolist()
+    planes = tuple(PlaneOff(name, *row) for name, row in zip(names, off, strict=True))
+    return PlaneCheck(planes, squares, int(freedom), sees)
 
 
 def _packed(causes: Causes) -> dict[str, NDArray[Any]]:

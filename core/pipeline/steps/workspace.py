@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -65,6 +65,13 @@ class Calibration:
         """Deviations of camera and fan by their calibrations, and how known planes follow them."""
         of_calibration = calibration_deviations(self.camera, self.fan)
         return followed_by_planes(of_calibration, self.camera.camera, self.control, self.fan.scale_sd)
+
+    def with_planes(self, planes: Sequence[KnownPlane]) -> Calibration:
+        """Copy the calibration with other known planes; without a fan the size of their boards is that of the scan."""
+        fan = self.fan
+        if not fan.fan.lines:
+            fan = replace(fan, scale_assumed=any(plane.scale_assumed for plane in planes))
+        return replace(self, fan=fan, planes=tuple(planes))
 
     @property
     def id(self) -> str:

@@ -15,7 +15,7 @@ from core.files.results.planes_file import planes_id
 from core.findings.proof import Doubt, ScanFacts, notes_of
 from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
-from core.messages import Message
+from core.messages import Message, plain
 from core.pipeline.steps.scan.known_planes import told_of_boards
 from core.pipeline.steps.workspace import Calibration, Workspace, planes_of
 from core.progress import Progress, silent
@@ -26,6 +26,7 @@ from core.scan.common_errors import CommonErrors, solve_common
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Causes, cause_first
+from core.scan.known_planes.known_plane import KnownPlane
 from core.scan.known_planes.plane_deviations import followed_by_planes, own_deviations
 from core.scan.known_planes.points_on_planes import note_on_planes_alone
 from core.scan.method import Method, ReconstructOptions
@@ -46,6 +47,8 @@ class Solved:
     """Of camera and fan by the known planes; None where there is no fan, or no plane."""
     notes: tuple[Message, ...] = ()
     """On the known planes."""
+    disagreement: Message | None = None
+    """The note among them that fan and known planes disagree, so that nothing measured is proof; None if not."""
 
     @property
     def checked(self) -> bool:
@@ -109,44 +112,88 @@ def solved_scan(
 ) -> Solved:
     """Locate a scan's sweeps and triangulate its points, twice where its surface bends.
 
-    A known plane that the fan, where there is one, disagrees with is left out; all are if it disagrees with more.
-    `of_boards` are notes on the boards that were looked for.
+    Where there is a fan, a known plane that it alone disagrees with, or on which no point agrees, is left out; all are
+    if it disagrees with more, or only without them the scan can be solved. `of_boards` are notes on the boards that
+    were looked for.
 
     Raises
     ------
     InputError
         If it cannot be solved; what is wrong with its pictures is told first, what is wrong with its boards last.
     """
-    notes = list(of_boards)
-    camera, planes = calibration.camera.camera, calibration.planes
-    planes = planes if options.method == Method.NETWORK else ()
-    while True:
+    notes, has_fan = list(of_boards), calibration.fan.fan.lines > 0
+    planes = calibration.planes if options.method == Method.NETWORK else ()
+
+    def solve(planes: Sequence[KnownPlane]) -> tuple[ScanFeatures, ScanResult]:
+        camera, fan = calibration.camera.camera, calibration.fan.fan
         with told_of_boards(notes), cause_first(partial(at_fault, features.faults)):
-            found = reconstruct_twice(features, camera, calibration.fan.fan, options, progress, planes)
-        met = {fit.name for fit in found[1].planes}
+            return reconstruct_twice(features, camera, fan, options, progress, planes)
+
+    def alone(disagreement: Message, found: tuple[ScanFeatures, ScanResult], check: PlaneCheck | None) -> Solved:
+        notes.append(disagreement)
+        return Solved(*found, calibration.with_planes(()), check, tuple(notes), disagreement)
+
+    while True:
+        try:
+            found = solve(planes)
+        except InputError:
+            by_fan = _solved_by_fan(solve) if planes and has_fan else None
+            if by_fan is None:
+                raise
+            return alone(_not_tied(planes), by_fan, None)
+        met = {one.name: one.points for one in found[1].planes}
         notes.extend(note_of("scan.board_not_met", board=one.name) for one in planes if one.name not in met)
         planes = tuple(one for one in planes if one.name in met)
-        used = replace(calibration, planes=planes)
-        if not calibration.fan.fan.lines:
+        if not has_fan:
             notes.append(note_on_planes_alone(found[1].planes))
-        if not planes or not calibration.fan.fan.lines:
-            return Solved(*found, used, notes=tuple(notes))
-        check = _check(found[1], used)
-        notes.append(check.note)
-        if check.passed:
-            return Solved(*found, used, check, tuple(notes))
+        if not planes or not has_fan:
+            return Solved(*found, calibration.with_planes(planes), notes=tuple(notes))
+        agreeing = tuple(one for one in planes if met[one.name])
+        if not agreeing:
+            return alone(_not_tied(planes), solve(()), None)
+        if agreeing != planes:
+            notes.extend(note_of("scan.board_disagrees", board=one.name) for one in planes if not met[one.name])
+            planes = agreeing
+            continue
+        check = _check(found[1], calibration.with_planes(planes))
+        if check.agrees:
+            # with a wrong board, what disagrees may have been left out as if something had moved
+            by_fan = _solved_by_fan(solve) if _complains(found[1]) else None
+            if by_fan is not None and not _complains(by_fan[1]):
+                return alone(_not_tied(planes), by_fan, None)
+            return Solved(*found, calibration.with_planes(planes), check, (*notes, check.note))
         off = check.alone_off
-        planes = () if off is None else tuple(one for one in planes if one.name != off.name)
-        if not planes:
-            with told_of_boards(notes), cause_first(partial(at_fault, features.faults)):
-                found = reconstruct_twice(features, camera, calibration.fan.fan, options, progress)
-            return Solved(*found, replace(calibration, planes=()), check, tuple(notes))
+        if off is None:
+            return alone(check.note, solve(()), check)
+        notes.append(check.note)
+        planes = tuple(one for one in planes if one.name != off.name)
+
+
+def _solved_by_fan(
+    solve: Callable[[Sequence[KnownPlane]], tuple[ScanFeatures, ScanResult]],
+) -> tuple[ScanFeatures, ScanResult] | None:
+    """The scan solved by the fan alone; None if it cannot be: what is told of that is told of the tied one already."""
+    try:
+        return solve(())
+    except InputError:
+        return None
+
+
+def _complains(scan: ScanResult) -> bool:
+    """Whether a solution has to say that something moved or is not as calibrated."""
+    return bool(scan.moved) or scan.fan_disagrees or scan.collapsed or scan.rig_changed
+
+
+def _not_tied(planes: Sequence[KnownPlane]) -> Message:
+    """The note that no solution ties the sweeps to both fan and known planes."""
+    return note_of("scan.planes_not_tied", boards=tuple(plain(one.name) for one in planes))
 
 
 def _check(scan: ScanResult, calibration: Calibration) -> PlaneCheck:
     """Compare the fan with the known planes, all that their calibrations leave uncertain reckoned with."""
-    camera, control = calibration.camera.camera, calibration.control
-    return check_by_planes(scan, camera, control, calibration.deviations)
+    camera, control, fan = calibration.camera.camera, calibration.control, calibration.fan
+    usual = followed_by_planes(changes(camera, fan.fan), camera, control, fan.scale_sd)
+    return check_by_planes(scan, camera, control, calibration.deviations, usual)
 
 
 def judged_scan(
@@ -183,8 +230,8 @@ def judged_scan(
     deviations = (*change.deviations, *section.deviations, *own)
     common = solve_common(solved.scan, camera, control, deviations, method, progress)
     causes = _causes(solved, change) if method == Method.NETWORK else ()
-    if solved.check is not None and not solved.check.passed:
-        of_the_day = replace(of_the_day, of_the_day=(*of_the_day.of_the_day, Doubt.of(solved.check.note)))
+    if solved.disagreement is not None:
+        of_the_day = replace(of_the_day, of_the_day=(*of_the_day.of_the_day, Doubt.of(solved.disagreement)))
     facts = facts_of(of_the_day, change, section, solved.features.too_fine_for_mosaic, solved.scan)
     names = [frame.name for frame in solved.features.frames]
     likely = note_on_causes(causes, facts, solved.scan.movements, names)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.board_shape import BoardTolerance
@@ -50,9 +50,7 @@ def see_boards(pictures: PictureReader, calibration: Calibration, progress: Prog
     if not has_fan:
         with told_of_boards(notes):
             _require_any(planes)
-        assumed = any(plane.scale_assumed for plane in planes)
-        calibration = replace(calibration, fan=replace(calibration.fan, scale_assumed=assumed))
-    return BoardsSeen(replace(calibration, planes=planes), notes)
+    return BoardsSeen(calibration.with_planes(planes), notes)
 
 
 def states_no_fan(rig: Rig) -> dict[str, bool]:
