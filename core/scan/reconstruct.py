@@ -29,7 +29,7 @@ from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.known_planes.known_plane import Control, KnownPlane
-from core.scan.known_planes.points_on_planes import PlaneFit, points_on_planes
+from core.scan.known_planes.points_on_planes import PlaneAgreement, points_on_planes
 from core.scan.method import Method, ReconstructOptions
 from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
@@ -251,7 +251,7 @@ def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: 
 
 def _plane_fits(
     control: Control, crossings: CrossingTable, line: NDArray[np.int64], solved: _Solved, camera: Camera
-) -> tuple[PlaneFit, ...]:
+) -> tuple[PlaneAgreement, ...]:
     """How the sweeps' points on each known plane agree with it."""
     fits, frames = [], solved.sweeps.frames
     located = crossings.on_plane & np.isin(crossings.a, frames)
@@ -264,7 +264,9 @@ def _plane_fits(
         off_mm = 1 / inverse - 1 / (rays @ plane.pi)
         rms_mm = float(np.sqrt(np.mean(off_mm**2))) if len(used) else 0.0
         left_out = len(mine) - len(used)
-        fits.append(PlaneFit(plane.name, len(used), len(np.unique(sweep)), left_out, rms_mm, plane.pi, plane.outline))
+        fits.append(
+            PlaneAgreement(plane.name, len(used), len(np.unique(sweep)), left_out, rms_mm, plane.pi, plane.outline)
+        )
     return tuple(fits)
 
 

@@ -12,7 +12,7 @@ from core.model.arrays import Array
 from core.scan.between_frames import Between
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameRecord
-from core.scan.known_planes.points_on_planes import PlaneFit
+from core.scan.known_planes.points_on_planes import PlaneAgreement
 from core.scan.network.datum import Datum
 from core.scan.network.fan_residuals import TIMES
 from core.scan.network.fan_speckle import FanSpeckle
@@ -107,7 +107,7 @@ class ScanResult:
     rig_explained: float | None = None
     rows_seen_to_roll: bool = False
     crossing_lines: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    planes: tuple[PlaneFit, ...] = ()
+    planes: tuple[PlaneAgreement, ...] = ()
 
     @property
     def needs_cause(self) -> bool:

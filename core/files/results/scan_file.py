@@ -40,7 +40,7 @@ from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import Cause, Causes, Suspect
-from core.scan.known_planes.points_on_planes import PlaneFit
+from core.scan.known_planes.points_on_planes import PlaneAgreement
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.part_light import PartLight
 from core.scan.plane_check import PlaneCheck, PlaneOff
@@ -162,7 +162,7 @@ class ScanFile:
     unsure_share: float = 0.0
     causes: Causes = ()
     part_light: PartLight | None = None
-    planes: tuple[PlaneFit, ...] = ()
+    planes: tuple[PlaneAgreement, ...] = ()
     plane_check: PlaneCheck | None = None
 
 
@@ -248,7 +248,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
     )
 
 
-def _packed_planes(planes: Sequence[PlaneFit]) -> dict[str, NDArray[Any]]:
+def _packed_planes(planes: Sequence[PlaneAgreement]) -> dict[str, NDArray[Any]]:
     return {
         "plane_names": pack_texts([one.name for one in planes]),
         "plane_points": np.array([(one.points, one.frames, one.left_out) for one in planes], dtype=np.int64),
@@ -258,13 +258,13 @@ def _packed_planes(planes: Sequence[PlaneFit]) -> dict[str, NDArray[Any]]:
     }
 
 
-def _planes(arrays: Arrays) -> tuple[PlaneFit, ...]:
+def _planes(arrays: Arrays) -> tuple[PlaneAgreement, ...]:
     if "plane_names" not in arrays:
         return ()
     names = unpack_texts(arrays["plane_names"])
     columns = (arrays[f"plane_{name}"] for name in ("points", "rms", "pis", "outlines"))
     return tuple(
-        PlaneFit(name, int(points), int(frames), int(left_out), float(rms), pi, outline)
+        PlaneAgreement(name, int(points), int(frames), int(left_out), float(rms), pi, outline)
         for name, (points, frames, left_out), rms, pi, outline in zip(names, *columns, strict=True)
     )
 

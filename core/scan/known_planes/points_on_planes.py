@@ -40,7 +40,7 @@ pull it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class PlaneFit:
+class PlaneAgreement:
     """Agreement of the sweeps' points on a known plane with it.
 
     Parameters
@@ -81,7 +81,7 @@ class _Cell:
     sigma: float
 
 
-def note_on_planes_alone(fits: Sequence[PlaneFit]) -> Message:
+def note_on_planes_alone(fits: Sequence[PlaneAgreement]) -> Message:
     """Make a note that a scan was measured by known planes alone, with how well the sweeps' points agree with them."""
     points = sum(fit.points for fit in fits)
     mm = np.sqrt(sum(fit.points * fit.rms_mm**2 for fit in fits) / max(points, 1))
