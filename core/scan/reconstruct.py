@@ -385,22 +385,30 @@ def _solve(
         explanation = explain_by_change(among, of_among, camera, control, progress)
         read_out = AT_ONCE if explanation is not None else read_out
     part = largest_rigid_interval(among, of_among, camera, control, names, progress, read_out)
-    kept[kept] = part.kept
-    among = crossings.select(kept)
-    sweeps = locate_together(among, line[kept], camera, control, progress, read_out)
+
+    def located(used: NDArray[np.bool_]) -> tuple[LocatedSweeps, tuple[Message, ...]]:
+        some = among.select(used)
+        sweeps = locate_together(some, of_among[used], camera, control, progress, read_out)
+        return sweeps, hand_notes(sweeps, some, camera, read_out, stated=options.row_time_us is not None)
+
+    used = part.kept
+    sweeps, of_hand = located(used)
+    explained = bool(watched.unsteady or of_hand or sweeps.collapsed)
+    denied = not watched.possible(part.movements)  # whatever crossings would gain by a movement
+    if explanation is None and denied and not explained and (sweeps.fan_silenced or sweeps.judged):
+        explanation = explain_by_change(among.select(used), of_among[used], camera, control, progress)
+    movements = () if denied and explanation is not None else part.movements
+    if part.movements and not movements:  # the change looked like a movement: all frames are as good
+        used = np.ones_like(used)
+        sweeps, of_hand = located(used)
+    kept[kept] = used
     weights = np.zeros(len(crossings))
     weights[kept] = sweeps.weights
-    of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    explained = bool(watched.unsteady or of_hand or sweeps.collapsed)
-    at_rest = not watched.possible(part.movements)  # whatever crossings would gain by a movement
-    if explanation is None and at_rest and not explained and (sweeps.fan_silenced or sweeps.judged):
-        explanation = explain_by_change(among, line[kept], camera, control, progress)
-    movements = () if at_rest and explanation is not None else part.movements
     explained = explained or bool(movements)
     moved = bool(movements) and not watched.drifts  # a drift makes crossings disagree, too
     judged = sweeps.notes + (() if explained or sweeps.fan_silenced else sweeps.judged)
-    datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
+    datum = datum_of(middle, covariance, by_sweep(among.select(used), sweeps.frames), camera)
     return _Solved(
         sweeps,
         weights,

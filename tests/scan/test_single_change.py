@@ -7,9 +7,11 @@ import pytest
 
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.change import displaced_fan, laser_of
+from core.scan.between_frames import Between
 from core.scan.features.extraction import ScanFeatures
 from core.scan.reconstruct import reconstruct
 from core.scan.single_change import Changed, Explanation, explain_by_change
+from core.scan.standstill import RigidInterval
 from core.scan.sweeps.fan_lines import FanLines
 from core.scan.sweeps.locate import numbered
 from core.simulate.scenario import Scenario
@@ -90,3 +92,19 @@ def test_a_scan_solved_all_the_same_proves_nothing_and_says_what_changed_in_plac
     assert scan.rig_changed
     codes = {note.code for note in scan.notes}
     assert "scan.explained_by_change" in codes and not codes & {"scan.crossings_scatter", "scan.fan_disagrees"}
+
+
+def test_what_a_change_explains_and_the_fans_light_denies_as_a_movement_costs_no_frame(exact, measured, monkeypatch):
+    """Crossings alone would see a movement in the middle, as they may where the rig changed; the fan lay still."""
+    half, still = len(measured.frames) // 2, np.zeros(12)
+    lit = replace(measured, frames=tuple(replace(one, fan_shifts_px=still) for one in measured.frames))
+
+    def seen(crossings, *_):
+        early = (crossings.a < half) & (crossings.with_fan | (crossings.b < half))
+        return RigidInterval(early, (Between(half - 1, half),), known=True)
+
+    monkeypatch.setattr("core.scan.reconstruct.largest_rigid_interval", seen)
+    camera = calibrated_with(exact, {3: -4.0, 4: -4.0})
+    scan = reconstruct(lit, camera, exact.rig.fan, fan_lines=FanLines.settled_as(exact.fan_line))
+    assert scan.rig_changed and not scan.movements and "scan.moved" not in {note.code for note in scan.notes}
+    assert len(scan.sweep_frames) == len(measured.frames)
