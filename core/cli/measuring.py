@@ -195,8 +195,8 @@ def run_artefact(
 
 def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
     """Read the past checks of the rig of a recording set; return them and what is to be printed."""
-    calibration = read_calibration(out)
-    history = history_of(read_rig(folder / RIG), calibration.id)
+    rig = read_rig(folder / RIG)
+    history = history_of(rig, read_calibration(out, has_fan=rig.has_fan).id)
     values = {
         "rig": history.name,
         "checks": [output.past_check_json(one, history.chart(one)) for one in history.checks],

@@ -76,8 +76,8 @@ def request(
     require_tables(rig, file, *_TABLES[step])
     camera = fan = None
     if calibrations is not None and step in ("scan", "check"):
-        known = read_calibration(calibrations)
-        camera, fan = known.camera.camera, known.fan.fan
+        known = read_calibration(calibrations, has_fan=rig.has_fan)
+        camera, fan = known.camera.camera, known.fan.fan if rig.has_fan else None
     elif calibrations is not None:
         camera = read_camera(calibrations / FILES["camera"]).camera
     return LiveRequest(step, choice, settings, rig, folder / step, camera, fan, display_px=320, ending=ending)

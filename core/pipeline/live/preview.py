@@ -50,12 +50,14 @@ class ReferenceMismatch:
 class ScanPreviewer:
     """Previewer of a scan: it reads the reference and then frames, one at a time.
 
-    Without a calibrated camera and fan it shows stripes only. An error nobody thought of ends the preview, never the
-    recording.
+    Without a calibrated camera and fan it shows stripes only; `has_fan` says whether the rig has one. An error nobody
+    thought of ends the preview, never the recording.
     """
 
-    def __init__(self, camera: Camera | None, fan: Fan | None, stripe: StripeSettings | None = None) -> None:
-        self._camera, self._fan, self._stripe = camera, fan, stripe
+    def __init__(
+        self, camera: Camera | None, fan: Fan | None, stripe: StripeSettings | None = None, *, has_fan: bool = True
+    ) -> None:
+        self._camera, self._fan, self._stripe, self._has_fan = camera, fan, stripe, has_fan
         self._reference: ReferenceFeatures | None = None
         self._preview: Preview | None = None
         self._seen: list[StripeSettings] = []
@@ -94,9 +96,9 @@ class ScanPreviewer:
         Raises
         ------
         InputError
-            If it shows no line of the fan.
+            If it shows no line of a fan that is there.
         """
-        self._reference = read_reference(picture, FeatureOptions(fan_stripe=self._stripe))
+        self._reference = read_reference(picture, FeatureOptions(fan_stripe=self._stripe, has_fan=self._has_fan))
         if self._camera is not None and self._fan is not None:
             self._preview = Preview(self._reference, self._camera, self._fan)
         return picture

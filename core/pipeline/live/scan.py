@@ -84,7 +84,9 @@ class LiveScan:
 
     def __init__(self, context: LiveContext, store: FrameStore) -> None:
         self._context, self._store, request = context, store, context.request
-        self._previewer = ScanPreviewer(request.camera, request.fan, request.options.stripe)
+        self._previewer = ScanPreviewer(
+            request.camera, request.fan, request.options.stripe, has_fan=request.rig.has_fan
+        )
         self._stage: ScanStage = "reference"
         self._self_switching = False
         self._looking = self._forced = False

@@ -289,12 +289,14 @@ def _same(one: Path, other: Path) -> bool:
     return other.exists() and file_hash(one) == file_hash(other)
 
 
-def read_calibration(out: Path, *, has_fan: bool = True) -> Calibration:
+def read_calibration(out: Path, *, has_fan: bool | None = None) -> Calibration:
     """Read camera.json and planes.json in `out`; InputError if one is missing or wrong, or they do not match.
 
-    Of a rig that has no fan, only camera.json.
+    Of a rig that has no fan, only camera.json: `has_fan` is what the rig states; None: what run.json in `out` does.
     """
     camera = read_camera(out / FILES["camera"])
+    if has_fan is None:
+        has_fan = not (out / FILES["run"]).exists() or states_fan(read_run(out / FILES["run"]))
     if not has_fan:
         return Calibration(camera, NO_FAN)
     fan = read_planes(out / FILES["planes"], camera.camera)
