@@ -38,6 +38,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 from scipy.special import chdtrc
 
@@ -54,6 +55,7 @@ from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import BY_CHANCE, Cause, Causes, Suspect
 from core.scan.known_planes.known_plane import Control
+from core.scan.known_planes.print_on_boards import printed_on_boards
 from core.scan.network.adjustment import HUBER_AT, has_collapsed
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
@@ -151,7 +153,7 @@ def compare_causes(
     solution = equations.weighted(replace(WEIGHTS, rounds=1), solution)
     if has_collapsed(equations, solution.pis):
         return ()
-    seen, shifts, noise_px = fan_shifts(features)
+    seen, shifts, noise_px = fan_shifts(features, printed_on_boards(features.fan, scan.fan_lines, bent, camera))
     noise_px = np.maximum(noise_px, LEAST_NOISE_PX)
     movements = possible_movements(scan.movements, seen, shifts, noise_px)
     candidates = [
@@ -168,12 +170,15 @@ def compare_causes(
     return _with_single_change(found, scan.rig_explained)
 
 
-def causes_of_light(features: ScanFeatures, movements: Sequence[Between]) -> Causes:
+def causes_of_light(
+    features: ScanFeatures, movements: Sequence[Between], printed: NDArray[np.bool_] | None = None
+) -> Causes:
     """Find the causes of a failed scan from the fan's light alone, for when no sweep could be located.
 
     Candidates are that something moved in `movements`, and that it drifted; () where neither explains more than chance.
+    Centrelines that are `printed` (P,) on boards tell nothing.
     """
-    seen, shifts, noise_px = fan_shifts(features)
+    seen, shifts, noise_px = fan_shifts(features, printed)
     when, none = (seen[:, None] + 1) / max(len(features.frames), 1), np.zeros((0, 0))
     candidates = [
         _Candidate(Suspect.MOVED, none, len(features.frames), _after(movements, seen)),

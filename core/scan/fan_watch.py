@@ -138,10 +138,15 @@ class FanRest:
         )
 
 
-def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> FanRest:
-    """Find when part or rig moved during a scan, by shifts of the fan's light in its frames since the reference."""
+def watch_fan(
+    features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan, printed: NDArray[np.bool_] | None = None
+) -> FanRest:
+    """Find when part or rig moved during a scan, by shifts of the fan's light in its frames since the reference.
+
+    Those of its centrelines that are `printed` (P,) on boards are not watched.
+    """
     count = len(features.frames)
-    known, shifts, noise = fan_shifts(features)
+    known, shifts, noise = fan_shifts(features, printed)
     everything = np.ones(count, dtype=np.bool_)
     at_rest = FanRest(everything, frames=len(known), stretches=shifts.shape[1], shifts=(known, shifts, noise))
     if not at_rest.known:
@@ -150,7 +155,8 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     splits = sorted(_splits(shifts, level, 0))
     if not splits:
         return at_rest
-    parts, per_px = np.split(np.arange(len(known)), splits), _depth_per_px(features, lines, camera, fan)
+    parts = np.split(np.arange(len(known)), splits)
+    per_px = _depth_per_px(features, lines, camera, fan)[_light(features, printed)]
     drift, left = _drift(shifts, known, level)
     if left < sum(_spread(shifts[part], level) for part in parts):
         aside_px, aside_mm = _median(np.abs(drift)), _median(np.abs(drift * per_px))
@@ -178,17 +184,25 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     )
 
 
-def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
+def fan_shifts(features: ScanFeatures, printed: NDArray[np.bool_] | None = None) -> tuple[Index, Array, Array]:
     """Collect how far in px each of C stretches of the fan's light has shifted sideways in the K frames that tell.
 
     Returns the indices (K,) of the frames, the shifts (K, C) and the noise (C,) of each stretch, as `fan_stretches`
-    cuts them.
+    cuts them, without those of centrelines that are `printed` (P,) on boards.
     """
     known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
     if not len(known):
         return known, np.zeros((0, 0)), np.zeros(0)
     shifts = np.array([features.frames[i].fan_shifts_px for i in known])
+    if printed is not None and printed.any():
+        shifts = shifts[:, _light(features, printed)]
     return known, shifts, np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
+
+
+def _light(features: ScanFeatures, printed: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """Of each stretch, whether it is of a centreline that is not `printed` (P,)."""
+    of_piece = np.array([number for number, _ in fan_stretches(features.fan)], dtype=np.int64)
+    return np.ones(len(of_piece), dtype=np.bool_) if printed is None else ~printed[of_piece]
 
 
 def possible_movements(

@@ -30,6 +30,7 @@ from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.known_planes.points_on_planes import PlaneAgreement, points_on_planes
+from core.scan.known_planes.print_on_boards import printed_on_boards
 from core.scan.method import Method, ReconstructOptions
 from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
@@ -137,10 +138,11 @@ def reconstruct(
             ),
         )
     names = [frame.name for frame in features.frames]
-    watched = watch_fan(features, lines, camera, fan)
+    printed = printed_on_boards(features.fan, lines, Control(fan, tuple(planes)), camera)
+    watched = watch_fan(features, lines, camera, fan, printed)
     _require_rest(features, watched)
     among, unrest = (crossings, line), partial(_unrest, watched, names)
-    shares = partial(causes_of_light, features, watched.movements)
+    shares = partial(causes_of_light, features, watched.movements, printed)
     bounces = NO_BOUNCES
     if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
         bounces = find_second_bounces(features.frames, among, camera, control)
@@ -183,7 +185,7 @@ def reconstruct(
         + (() if too_bright is None else (too_bright,))
         + notes_on_blur(exposure_blurs(features.frames, sheets, cloud, camera))
         + _unsure(found, cloud, solved, options)
-        + _fan_notes(lines),
+        + _fan_notes(lines, printed),
         datum=solved.datum,
         speckle=_speckle(features, lines, sweeps, camera, fan) if _together(options) else None,
         crossing_reasons=reasons,
@@ -540,8 +542,10 @@ def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:
     )
 
 
-def _fan_notes(lines: FanLines) -> tuple[Message, ...]:
-    left_out = [reason for reason in lines.reason if reason is not None]
+def _fan_notes(lines: FanLines, printed: NDArray[np.bool_]) -> tuple[Message, ...]:
+    """A note on light of the fan that is not used; print on boards is none."""
+    reasons = zip(lines.reason, printed, strict=True)
+    left_out = [reason for reason, is_print in reasons if reason is not None and not is_print]
     if not left_out:
         return ()
     return (note_of("scan.fan_light_unused", n=len(left_out), reason=left_out[0]),)
