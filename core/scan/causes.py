@@ -55,12 +55,12 @@ from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import BY_CHANCE, Cause, Causes, Suspect
 from core.scan.known_planes.known_plane import Control
-from core.scan.known_planes.print_on_boards import printed_on_boards
 from core.scan.network.adjustment import HUBER_AT, has_collapsed
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut, row_forms
+from core.scan.print_on_boards import printed_on_boards
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import change_of_misclosures
 from core.scan.standstill import LEAST_SEEN_SHARE, movements_of

@@ -30,13 +30,13 @@ from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.known_planes.points_on_planes import PlaneAgreement, points_on_planes
-from core.scan.known_planes.print_on_boards import printed_on_boards
 from core.scan.method import Method, ReconstructOptions
 from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.read_out import AT_ONCE, ReadOut
+from core.scan.print_on_boards import printed_on_boards
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
 from core.scan.single_change import AS_CALIBRATED, Explanation, explain_by_change
@@ -388,13 +388,13 @@ def _solve(
         read_out = AT_ONCE if explanation is not None else read_out
     part = largest_rigid_interval(among, of_among, camera, control, names, progress, read_out)
 
-    def located(used: NDArray[np.bool_]) -> tuple[LocatedSweeps, tuple[Message, ...]]:
+    def locate(used: NDArray[np.bool_]) -> tuple[LocatedSweeps, tuple[Message, ...]]:
         some = among.select(used)
         sweeps = locate_together(some, of_among[used], camera, control, progress, read_out)
         return sweeps, hand_notes(sweeps, some, camera, read_out, stated=options.row_time_us is not None)
 
     used = part.kept
-    sweeps, of_hand = located(used)
+    sweeps, of_hand = locate(used)
     explained = bool(watched.unsteady or of_hand or sweeps.collapsed)
     denied = not watched.possible(part.movements)  # whatever crossings would gain by a movement
     if explanation is None and denied and not explained and (sweeps.fan_silenced or sweeps.judged):
@@ -402,7 +402,7 @@ def _solve(
     movements = () if denied and explanation is not None else part.movements
     if part.movements and not movements:  # the change looked like a movement: all frames are as good
         used = np.ones_like(used)
-        sweeps, of_hand = located(used)
+        sweeps, of_hand = locate(used)
     kept[kept] = used
     weights = np.zeros(len(crossings))
     weights[kept] = sweeps.weights

@@ -8,7 +8,7 @@ from core.scan.fan_watch import fan_shifts, watch_fan
 from core.scan.features.extraction import FrameFeatures, ScanFeatures
 from core.scan.features.reference import STRETCH
 from core.scan.known_planes.known_plane import Control
-from core.scan.known_planes.print_on_boards import printed_on_boards
+from core.scan.print_on_boards import printed_on_boards
 from core.scan.sweeps.fan_lines import AMBIGUOUS, UNASSIGNED, FanLines
 from tests.scan.known_planes.planes_on_paper import CORNER, board, scan_on_paper
 from tests.scan.synthetic import CAMERA, FAN
