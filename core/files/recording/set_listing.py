@@ -89,12 +89,13 @@ def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> t
 
 def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
     """Note pictures and films in a folder that are not read, if `fits` accepts their names; () if none."""
-    codes = ("set.not_read", "set.films_not_read")
-    return tuple(
-        note_of(code, n=len(names), folder="" if folder is None else folder.name, names=names[:NAMES_SHOWN])
-        for code, names in zip(codes, names_not_read(folder, fits), strict=True)
-        if names
-    )
+    pictures, films = names_not_read(folder, fits)
+    within, notes = "" if folder is None else folder.name, list[Message]()
+    if pictures:
+        notes.append(note_of("set.not_read", n=len(pictures), folder=within, names=pictures[:NAMES_SHOWN]))
+    if films:
+        notes.append(note_of("set.films_not_read", n=len(films), folder=within, names=films[:NAMES_SHOWN]))
+    return tuple(notes)
 
 
 def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:
