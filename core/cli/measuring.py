@@ -52,7 +52,7 @@ from core.report.facts.of_camera import camera_facts, parameter_facts
 from core.report.facts.of_checks import readjustment_facts
 from core.report.facts.of_gauge import pictures_fact, pictures_table
 from core.report.facts.of_planes import planes_facts, planes_sentences
-from core.report.facts.of_scan import scan_facts, sigma_of
+from core.report.facts.of_scan import plane_check_facts, plane_tables, scan_facts, sigma_of
 from core.second_process import SecondProcess
 from core.settings.options import Options, StatedTilt
 from core.stage_times import StageTimes
@@ -210,8 +210,12 @@ def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Sh
     with alone_with(folder, out, channel=chosen.channel) as work:
         measured = scan_step(work, chosen.for_scan, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
-        facts = scan_facts(frames, points, len(measured.mesh.triangles), sigma_of(measured.scan.cloud.sigma))
-        rows = [*output.fact_rows(facts), *output.left_out_rows(frames)]
+        facts = (
+            *scan_facts(frames, points, len(measured.mesh.triangles), sigma_of(measured.scan.cloud.sigma)),
+            *plane_check_facts(measured.check),
+        )
+        tables = plane_tables(measured.scan.planes, measured.check)
+        rows = [*output.fact_rows(facts, tables), *output.left_out_rows(frames)]
         values = output.frames_json(frames, points)
         return _shown(work, "scan", rows, values, "cloud", "mesh")
 

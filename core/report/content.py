@@ -31,10 +31,12 @@ from core.report.facts.of_camera import camera_facts, parameter_facts
 from core.report.facts.of_checks import Check, artefact_facts, check_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_planes import planes_facts
-from core.report.facts.of_scan import scan_facts, sigma_of
+from core.report.facts.of_scan import plane_check_facts, plane_tables, scan_facts, sigma_of
 from core.report.facts.table import FactTable
 from core.report.template import SECTIONS, Paper, ReportTemplate
 from core.report.wording import ENGLISH, Words, result_name
+from core.scan.known_planes.points_on_planes import PlaneAgreement
+from core.scan.plane_check import PlaneCheck
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -233,6 +235,8 @@ class ReportContent:
         The calibrations used.
     cloud, mesh
         The measured surface in the camera frame; the mesh may be without triangles.
+    known_planes, plane_check
+        How the scan's points agree with the known planes in it, and the fan with these; None where it was not compared.
     gauge
         The thickness, or None for a scan without two faces.
     inspected
@@ -343,6 +347,8 @@ class ReportContent:
     settings: Mapping[str, Message | str] = field(default_factory=dict)
     notes: tuple[Message, ...] = ()
     limits: tuple[Message, ...] = ()
+    known_planes: tuple[PlaneAgreement, ...] = ()
+    plane_check: PlaneCheck | None = None
     method: str = ""
     part: str = ""
     serial: str = ""
@@ -503,11 +509,17 @@ class ReportContent:
 
     @property
     def scan_facts(self) -> tuple[Fact, ...]:
-        """Facts (name, value, unit) on the scan: frames, points, σ."""
+        """Facts (name, value, unit) on the scan: frames, points, σ, and how the fan agrees with known planes."""
         cloud = self.cloud
         extent = np.ptp(cloud.points, axis=0) if len(cloud) else None
         triangles = len(self.mesh.triangles)
-        return scan_facts(self.frames, len(cloud), triangles, sigma_of(cloud.sigma), extent_mm=extent)
+        of_scan = scan_facts(self.frames, len(cloud), triangles, sigma_of(cloud.sigma), extent_mm=extent)
+        return (*of_scan, *plane_check_facts(self.plane_check))
+
+    @property
+    def plane_tables(self) -> tuple[FactTable, ...]:
+        """The table of the known planes in the scan; () if there are none."""
+        return plane_tables(self.known_planes, self.plane_check)
 
     @property
     def all_notes(self) -> tuple[Message, ...]:

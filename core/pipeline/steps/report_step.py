@@ -167,7 +167,8 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
     calibration = read_calibration(out, has_fan=states_fan(record))
     gauge_path = out / FILES["gauge"]
     profiled = (out / FILES["profile"]).exists()
-    cloud, mesh = _profiled(out, calibration) if profiled else _scanned(out, calibration)
+    scan = None if profiled else _scan(out, calibration)
+    cloud, mesh = _profiled(out, calibration) if scan is None else _scanned(out, calibration)
     gauge = read_gauge(gauge_path, cloud) if gauge_path.exists() else None
     method = str(record.settings.get("scan", {}).get("method"))
     content = ReportContent(
@@ -189,6 +190,8 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         timestamp=record.measured_at,
         simulated=record.simulated,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
+        known_planes=() if scan is None else scan.planes,
+        plane_check=None if scan is None else scan.plane_check,
     )
     content = replace(with_inspection(content, out), check=_check(out, calibration))
     return with_brought_sections(content, out)
@@ -201,11 +204,15 @@ def _check(out: Path, calibration: Calibration) -> InterimCheck | None:
     return check if check is not None and check.calibration_id == calibration.id else None
 
 
+def _scan(out: Path, calibration: Calibration) -> ScanFile:
+    scan = read_scan(out / FILES["scan"])
+    check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
+    return scan
+
+
 def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:
     cloud_file = read_cloud(out / FILES["cloud"])
     check_calibration(out / FILES["cloud"], cloud_file.calibration_id, calibration)
-    scan = read_scan(out / FILES["scan"])
-    check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
     return cloud_file.cloud, read_mesh(out / FILES["mesh"])
 
 

@@ -102,5 +102,5 @@ def scan_step(
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
         file = scan_file(features, scan, judgement, calibration, log.pictures, settings, light, solved.check)
-        write_measured(log, measured := Measured(scan, mesh), file, progress)
+        write_measured(log, measured := Measured(scan, mesh, solved.check), file, progress)
     return measured

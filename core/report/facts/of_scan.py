@@ -1,4 +1,4 @@
-"""What is told of a measured scan: its points, how sure they are, and what they cover."""
+"""What is told of a measured scan: its points, how sure they are, what they cover, and the known planes in it."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.messages import Message, decimals_of, label
+from core.messages import Message, decimals_of, label, plain
 from core.model.arrays import Array
 from core.report.facts.fact import Fact, Reader
+from core.report.facts.of_checks import CHANCE
 from core.report.facts.pictures import Picture, used_fact
+from core.report.facts.table import Column, FactTable
+from core.scan.known_planes.points_on_planes import PlaneAgreement
+from core.scan.plane_check import PlaneCheck
 
 SMALL_MM = 10.0
 """A scan that is smaller than this in all directions is told with decimals."""
@@ -60,6 +64,52 @@ def scan_facts(
         whole = large if max(x, y, z) >= SMALL_MM else small
         facts.append(Fact(label("extent x, y, z"), whole, level=Reader.AUDITOR))
     return tuple(facts)
+
+
+def plane_tables(planes: Sequence[PlaneAgreement], check: PlaneCheck | None) -> tuple[FactTable, ...]:
+    """Make the table of the known planes of a scan, and of those that its check has left out; () if there are none.
+
+    A row has the points on the board and how they agree with it, and how far off it the fan is.
+    """
+    used, off = {one.name: one for one in planes}, {} if check is None else {one.name: one for one in check.planes}
+    columns = (
+        Column(label("known plane")),
+        Column(label("points")),
+        Column(label("left out")),
+        Column(label("RMS"), "mm", 3, label("RMS distance in depth of the sweeps' points from the board")),
+        Column(label("fan off by"), "mm", 3, label("How much farther away the fan has the board"), signed=True),
+        Column(label("turned by"), "°", 3, label("Angle between the board and where the fan has it")),
+    )
+    rows = tuple(
+        (
+            plain(name),
+            *((None,) * 3 if (one := used.get(name)) is None else (one.points, one.left_out, one.rms_mm)),
+            *((None,) * 2 if (its := off.get(name)) is None else (its.mm, its.degrees)),
+        )
+        for name in {**used, **off}
+    )
+    return (FactTable(columns, rows, level=Reader.AUDITOR),) if rows else ()
+
+
+def plane_check_facts(check: PlaneCheck | None) -> tuple[Fact, ...]:
+    """Make the facts on the comparison of the fan with known planes; () where there was none."""
+    if check is None:
+        return ()
+    return (
+        Fact(
+            label("fan against planes: χ²"), check.squares, "", 1,
+            Message("told.tip_squares", "Of {n} numbers that are compared", n=check.freedom), Reader.METROLOGIST,
+        ),
+        Fact(
+            CHANCE, check.p, tip=label("Probability that chance alone would set fan and known planes as far apart"),
+            level=Reader.AUDITOR, significant=2,
+        ),
+        Fact(
+            label("changes it would show"), 100 * check.sees, "%", 0,
+            label("Share of usual changes of a rig since its calibration that the comparison would tell"),
+            Reader.AUDITOR,
+        ),
+    )  # fmt: skip
 
 
 def sigma_of(sigma: Array) -> tuple[float, float] | None:

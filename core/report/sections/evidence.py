@@ -22,6 +22,7 @@ from core.report.layout.blocks import (
     GAP,
     Cell,
     Limits,
+    fact_tables,
     figures,
     heads,
     more_line,
@@ -174,7 +175,7 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Make the section on how many frames and calibration pictures were used, and why others were left out."""
     used = [frame.name for frame in content.frames if frame.used]
-    parts: list[Flowable] = [figures(look, content.scan_facts)]
+    parts: list[Flowable] = [figures(look, content.scan_facts), *fact_tables(look, content.plane_tables)]
     if not content.frames:
         parts.append(look.fixed_text("No frame was given.", "small"))
     if used:

@@ -25,10 +25,11 @@ from core.stage_times import StageTimes, stage
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Measured:
-    """Results of the scan step in memory: the solved scan and its mesh; its files hold the same."""
+    """Results of the scan step in memory: solved scan, mesh, check by known planes; its files hold the same."""
 
     scan: ScanResult
     mesh: Mesh
+    check: PlaneCheck | None = None
 
 
 def write_measured(log: StepLog, measured: Measured, file: ScanFile, progress: Progress) -> None:
