@@ -61,6 +61,9 @@ ROWS = (
             "{celsius:.1f} °C and that of the plane target."),
     Finding("scan.board_not_met", Weight.CAUTION, Effect.NONE,
             "No sweep is seen on the board {board}: it is not used. Let sweeps cross it."),
+    Finding("scan.boards_not_used", Weight.CAUTION, Effect.NONE,
+            "The boards beside the part are not used: by the method three-crossings the fan alone locates each sweep. "
+            "Choose the method network."),
     Finding("scan.board_off", Weight.CAUTION, Effect.NONE,
             "The board {board} moved or is bent: the fan, which agrees with the others, has it {mm:.2g} mm aside and "
             "turned by {degrees:.2g}°, {times:.1f} times what is expected. It is not used."),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
-from core.pipeline.steps.scan.features import scan_features, see_boards, states_no_fan
+from core.pipeline.steps.scan.features import boards_of_scan, scan_features, states_no_fan
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan, stored_poses_of
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
@@ -60,7 +60,7 @@ def scan_step(
     settings, recording_set = settings or Options(), work.recording_set
     require_frames(recording_set, settings)
     with work.step("scan") as log:
-        boards = see_boards(log.pictures, with_size_by_artefact(work, work.calibration()), progress)
+        boards = boards_of_scan(log.pictures, with_size_by_artefact(work, work.calibration()), settings, progress)
         features = scan_features(log.pictures, boards.calibration, settings, progress, watch, earlier, seen)
         log.settings.update(
             {

@@ -6,19 +6,50 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
+from core.findings.table import note_of
+from core.messages import Command, Message
 from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import stored_features
-from core.pipeline.steps.scan.known_planes import see_boards, states_no_fan
+from core.pipeline.steps.scan.known_planes import BoardsSeen, see_boards, states_no_fan
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
 from core.pipeline.steps.workspace import Calibration, check_size
 from core.progress import Progress, silent
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
+from core.scan.method import Method
 from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview, stripes_alone
 from core.settings.options import Options
 
-__all__ = ["crossed_scan", "scan_features", "see_boards", "states_no_fan"]
+__all__ = ["boards_of_scan", "crossed_scan", "scan_features", "states_no_fan"]
+
+
+def boards_of_scan(
+    pictures: PictureReader, calibration: Calibration, settings: Options, progress: Progress
+) -> BoardsSeen:
+    """Find the boards of a scan where its method ties sweeps to known planes; else they are not looked for, and told.
+
+    Raises
+    ------
+    InputError
+        As of `see_boards`, or if there is no fan and the method needs one.
+    """
+    recording_set = pictures.recording_set
+    if settings.method == Method.NETWORK:
+        return see_boards(pictures, calibration, progress)
+    if not recording_set.rig.has_fan:
+        raise InputError(
+            Message(
+                "scan.three_crossings_without_fan",
+                "the method three-crossings locates each sweep by the fan alone, and the rig has none",
+            ),
+            where="scan",
+            todo=Message(
+                "scan.advice_network", "choose the method network{command}", command=Command("--method network")
+            ),
+        )
+    return BoardsSeen(calibration, (note_of("scan.boards_not_used"),) if recording_set.known_planes else ())
 
 
 def scan_features(
