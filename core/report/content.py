@@ -499,7 +499,7 @@ class ReportContent:
         artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
         house = {
             "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
-            "planes": planes_facts(self.fan) if self.fan.fan.lines else (),
+            "planes": planes_facts(self.fan) if self.has_fan else (),
             "check": () if self.check is None else check_facts(self.check),
             "artefact": tuple(chain(*artefacts)),
             "scan": self.scan_facts,
@@ -520,6 +520,11 @@ class ReportContent:
     def plane_tables(self) -> tuple[FactTable, ...]:
         """The table of the known planes in the scan; () if there are none."""
         return plane_tables(self.known_planes, self.plane_check)
+
+    @property
+    def has_fan(self) -> bool:
+        """Whether there is a fan; without one, known planes alone are what the scan was measured by."""
+        return self.fan.fan.lines > 0
 
     @property
     def all_notes(self) -> tuple[Message, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pypdf import PdfReader
 
+from core.calibrate.results import NO_FAN
 from core.checks.artefact_check import Artefact, ArtefactCheck
 from core.errors import Cancelled
 from core.inspect.causes import Cause
@@ -16,6 +17,7 @@ from core.inspect.characteristic import thickness_characteristic
 from core.inspect.results import Contribution
 from core.messages import plain
 from core.model.certificate import Certificate
+from core.pipeline.steps.report_step import method_in_words
 from core.report.facts.of_budget import reported_rows
 from core.report.pdf import build_report
 from core.report.template import SECTIONS
@@ -307,3 +309,12 @@ def test_the_decision_rule_is_named_always(content, data):
     assert "Decision rule: ISO 14253-1, a deviation must stay within" in words(data)
     without = replace(content, gauge=replace(content.gauge, nominal_mm=None, tolerance_mm=None))
     assert "Decision rule: none, for no limits are stated." in words(build_report(without))
+
+
+def test_without_a_fan_nothing_is_said_of_one(content):
+    rig = {"Camera": content.rig["Camera"], "Camera target": content.rig["Camera target"]}
+    alone = replace(content, fan=NO_FAN, rig=rig, method=method_in_words("network", has_fan=False))
+    said = words(build_report(alone))
+    assert "tied to known planes" in said and "Camera target none stated" in said
+    of_fan = ("Laser planes", "line and the fan", "Plane target", "Fixed laser")
+    assert not [one for one in of_fan if one in said]

@@ -62,6 +62,10 @@ METHOD_IN_WORDS: dict[str, str] = {
         "each sweep located from its own crossings with the fan (Sun et al. 2023, section 4)"
     ),
 }
+BY_PLANES_ALONE = label(
+    "all sweeps adjusted together as one network, tied to known planes and to each other by their crossings"
+)
+"""Of the network where there is no fan."""
 WITHOUT_SWEEPS = label("no sweeps: steps on the light profiles of the fixed fan alone")
 METHODS = (label("network"), label("three-crossings"))
 """As the settings name them."""
@@ -185,7 +189,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         hashes=record.inputs,
         settings=_settings_in_words(record, profiled=profiled),
         notes=record.all_notes,
-        method=WITHOUT_SWEEPS if profiled else METHOD_IN_WORDS.get(method, ""),
+        method=WITHOUT_SWEEPS if profiled else method_in_words(method, has_fan=calibration.fan.fan.lines > 0),
         version=__version__,
         timestamp=record.measured_at,
         simulated=record.simulated,
@@ -195,6 +199,11 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
     )
     content = replace(with_inspection(content, out), check=_check(out, calibration))
     return with_brought_sections(content, out)
+
+
+def method_in_words(method: str, *, has_fan: bool) -> str:
+    """Describe how sweeps were located by a `method` of the settings; without a fan, known planes alone do that."""
+    return METHOD_IN_WORDS.get(method, "") if has_fan else BY_PLANES_ALONE
 
 
 def _check(out: Path, calibration: Calibration) -> InterimCheck | None:

@@ -106,7 +106,7 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
-        *(_fan(look, content, other) if content.fan.fan.lines else ()),
+        *(_fan(look, content, other) if content.has_fan else ()),
         look.text(f"{look.words('Rig')} {content.rig_id}".strip(), "small_strong"),
         pairs_table(look, rig, other, 27 * mm),
         *more_line(look, len(content.rig) - limits.settings),
@@ -145,7 +145,8 @@ TARGETS = {
     "reference_target": label("Reference target"),
 }
 ALWAYS_TOLD = ("camera_target", "plane_target")
-"""Targets that every length rests on: the report says of these as well that nothing is stated."""
+"""Targets that every length rests on: the report says of these as well that nothing is stated.
+Without a fan, lengths rest on the plane target only where the rig states one."""
 
 
 def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -154,7 +155,7 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
     traced = {
         words(title): content.certificates.get(name, Certificate())
         for name, title in TARGETS.items()
-        if name in ALWAYS_TOLD or name in content.certificates
+        if name in content.certificates or (name in ALWAYS_TOLD and (content.has_fan or title in content.rig))
     }
     boards = {name.partition(".")[2]: one for name, one in content.certificates.items() if name not in TARGETS}
     traced |= {words("Board {name}", name=name): one for name, one in boards.items()}

@@ -84,7 +84,7 @@ def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
         words("Report made"): "" if content.reported is None else words.day(content.reported),
         words("Rig"): content.rig_id,
         words("Camera calibration"): marks.get("camera", ""),
-        words("Laser planes"): marks.get("planes", ""),
+        **({words("Laser planes"): marks.get("planes", "")} if content.has_fan else {}),
         words("Software"): f"Trisect {content.version}",
         words("Inputs, SHA-256"): short_hash(content.inputs_digest) if content.hashes else "",
     }

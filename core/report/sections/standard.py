@@ -173,11 +173,19 @@ def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits:
     if overlay is None or "frame" not in pictures:
         return []
     crossings = plural_message("report.crossings", "{n:,} crossing", "{n:,} crossings", n=len(overlay.crossings))
-    caption = look.words(
-        "Frame {name}, brightened, with {crossings} of the hand-moved line and the fan. σ is the standard uncertainty "
-        "of the depth of the points on the hand-moved line.",
-        name=overlay.name,
-        crossings=look.words(crossings),
+    caption = (
+        look.words(
+            "Frame {name}, brightened, with {crossings} of the hand-moved line and the fan. σ is the standard "
+            "uncertainty of the depth of the points on the hand-moved line.",
+            name=overlay.name,
+            crossings=look.words(crossings),
+        )
+        if content.has_fan
+        else look.words(
+            "Frame {name}, brightened. σ is the standard uncertainty of the depth of the points on the hand-moved "
+            "line.",
+            name=overlay.name,
+        )
     )
     body = [Picture(pictures["frame"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "frame", "One frame of the scan", body)]
