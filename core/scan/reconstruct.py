@@ -29,7 +29,7 @@ from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.known_planes.known_plane import Control, KnownPlane
-from core.scan.known_planes.points_on_planes import PlaneAgreement, points_on_planes
+from core.scan.known_planes.points_on_planes import PlaneAgreement, frames_across, points_on_planes
 from core.scan.method import Method, ReconstructOptions
 from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
@@ -88,6 +88,11 @@ ADD_BOARDS = Message(
     "let each sweep cross two boards at an angle, with pictures of them in scan/planes, or use a fan",
 )
 
+LARGER_FIELDS = Message(
+    "scan.advice_larger_fields",
+    "use boards with larger plain fields, such as printed rectangles, take larger pictures, or use a fan",
+)
+
 
 def reconstruct(
     features: ScanFeatures,
@@ -113,9 +118,10 @@ def reconstruct(
     progress("network", 0, 3)
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
-    control = Control(fan)
+    control, seen = Control(fan), 0
     if planes and _together(options):
         on_planes, of_plane = points_on_planes(features, planes, camera)
+        seen = len(on_planes)
         firm = _held_from_turning(crossings.followed_by(on_planes), camera)[len(crossings) :]
         on_planes, of_plane = on_planes.select(firm), of_plane[firm]
         used = np.unique(of_plane)
@@ -124,6 +130,8 @@ def reconstruct(
         line = np.concatenate([line, fan.lines + np.searchsorted(used, of_plane)])
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
     if not fan.lines:
+        if not control.planes:
+            raise _refused(too_bright, *_why_none_met(seen, frames_across(features, planes)))
         _require_planes(crossings, line, control, camera)
     if not np.any(crossings.with_fan):
         raise _refused(
@@ -232,23 +240,43 @@ def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: 
     free = free_directions(rays, np.einsum("mi,mi->m", rays, pis))
     if not free:
         return
-    met = len(np.unique(line[on_plane]))
-    if not met:
-        what = Message(
-            "scan.no_known_plane",
-            "there is no fan, and no sweep is seen on a known plane, so nothing says where the hand-held laser was",
-        )
-        todo = ADD_BOARDS
-    else:
-        what = plural_message(
-            "scan.planes_leave_free",
-            "one plane leaves {free} of 3 directions of every sweep's light plane free",
-            "{n} planes that lie in one leave {free} of 3 directions of every sweep's light plane free",
-            n=met,
-            free=free,
-        )
-        todo = Message("scan.advice_second_plane", "add a second one at an angle, or the fan")
+    what = plural_message(
+        "scan.planes_leave_free",
+        "one plane leaves {free} of 3 directions of every sweep's light plane free",
+        "{n} planes that lie in one leave {free} of 3 directions of every sweep's light plane free",
+        n=len(control.planes),
+        free=free,
+    )
+    todo = Message("scan.advice_second_plane", "add a second one at an angle, or the fan")
     raise InputError(what, where="scan", todo=todo)
+
+
+def _why_none_met(points: int, across: int) -> tuple[Message, Message]:
+    """Why no known plane ties a sweep, and what to do.
+
+    By so many `points` on them, and so many frames whose light goes `across` them.
+    """
+    if points:
+        what = Message(
+            "scan.planes_met_along_one_line",
+            "there is no fan, and each sweep meets known planes along one straight line only, about which it may turn",
+        )
+        return what, ADD_BOARDS
+    if across:
+        what = plural_message(
+            "scan.light_on_print",
+            "there is no fan, and in {n} frame whose sweep crosses a known plane its light lies on print, which would "
+            "draw it aside",
+            "there is no fan, and in all {n} frames whose sweep crosses a known plane its light lies on print, which "
+            "would draw it aside",
+            n=across,
+        )
+        return what, LARGER_FIELDS
+    what = Message(
+        "scan.no_known_plane",
+        "there is no fan, and no sweep is seen on a known plane, so nothing says where the hand-held laser was",
+    )
+    return what, ADD_BOARDS
 
 
 def _plane_fits(

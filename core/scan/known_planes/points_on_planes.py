@@ -111,6 +111,15 @@ def points_on_planes(
     return bent_back(_table(kept, cell_px, width), camera), np.array([c.plane for c, _ in kept], dtype=np.int64)
 
 
+def frames_across(features: ScanFeatures, planes: Sequence[KnownPlane]) -> int:
+    """Count the frames whose light lies on a board, be it on print or on plain board, over a cell at least."""
+    faces, cell_px = [_Face.of(plane, features.image_size) for plane in planes], features.crossings.half_length_px
+    return sum(
+        any(np.count_nonzero(_at(face.inside, line.uv)) >= cell_px for line in frame.centrelines for face in faces)
+        for frame in features.frames
+    )
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class _Face:
     """Where a board is seen: `inside` its outline (H, W), and what is `plain` on it, without print."""
