@@ -82,7 +82,7 @@ def test_what_cannot_be_exported_is_one_sentence(out, words, sentence):
 
 def test_a_folder_without_results_has_nothing_to_export(tmp_path):
     said = trisect("export", tmp_path, "--format", "xlsx")
-    assert (said.code, "camera.json: the file is missing" in said.sentence) == (2, True)
+    assert (said.code, "run.json: the file is missing" in said.sentence) == (2, True)
 
 
 def test_a_camera_goes_to_opencv_and_comes_back_to_calibrate_the_planes_with(tiny_set, tiny_measured, tmp_path):

@@ -247,7 +247,9 @@ def test_wings_of_the_window_alone_and_broken_ones_are_among_the_names_that_are_
     install("lab-gauges", {"lab_gauges": ""}, groups)
     monkeypatch.setenv(WITHOUT, "gouges")
     look_again()
-    assert "names gouges, but the wings are broken, gauges, rig_planning and studies." in trisect("--help").err
+    assert (
+        "names gouges, but the wings are broken, gauges, geometry, rig_planning and studies." in trisect("--help").err
+    )
 
 
 def test_the_name_of_an_entry_point_is_a_name_of_its_wing(install, monkeypatch):

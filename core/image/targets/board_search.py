@@ -7,7 +7,6 @@ two detectors. Whatever finds it, the board's own squares and ends decide whethe
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -18,11 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from core.compiled import compiled, inlined
 from core.image.targets.corners import grow, is_checkered, is_even, refined, spacing
 from core.image.targets.picture import enlarged, reduced, resized, without_stripes
 from core.model.arrays import Array
-from core.model.small_arrays import Index, new_indices, new_row, new_table, smallest
 
 MOST_BOARDS = 12
 """Seeds followed in one picture."""
@@ -35,12 +32,6 @@ MOST_CORNERS = 4000
 
 MOST_TRIES = 500
 """Saddle points tried in vain before the search ends."""
-
-NEIGHBOURS = 200
-"""Saddle points about one of them among which its neighbours in the grid must be."""
-
-ALIKE = 0.1
-"""Strength of a corner's neighbours, as a share of its own, at least (it goes with the square of the contrast)."""
 
 BLUR = 1.5
 """σ in pixels at which saddles are sought: squares from about 7 pixels on."""
@@ -59,16 +50,6 @@ LEAST_EVEN = 0.75
 
 LEAST_TWOFOLD = 0.4
 """Share of it that rises and falls twice around; edges at 35° to each other still have half."""
-
-LIKE_ITSELF = -0.3
-"""Cosine of twice the angle between the light squares of two saddles, from which on they are no neighbours in a grid:
-+1 where they lie alike, −1 at a right angle."""
-
-FARTHEST_ASIDE = 0.27
-"""Of how far a neighbour in the grid is: how far it may be beside its edge, 15°."""
-
-ROUGHLY = 0.35
-"""Of the shortest step in a grid of nine: how far a corner may be from where its neighbours put it."""
 
 QUICK_CHECK = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
 """Of OpenCV's older detector: as usual, but it gives up where no squares of one size are seen, in a fiftieth of the
@@ -213,6 +194,8 @@ def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array
     A saddle's two edges run where its second derivative vanishes; its neighbours in the grid are the next saddles
     along them. Seeds within the grids of `known`, to which the caller may add between two seeds, are left out.
     """
+    from core.image.targets.grid_of_nine import nine_about  # what is compiled takes time to import that most never need
+
     points = saddles.points
     nine = np.empty(9, dtype=np.int64)
     if len(points) < len(nine):
@@ -221,7 +204,7 @@ def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array
     for k, point in enumerate(points):
         if any(_within(grid, point) for grid in known):
             continue
-        reach = _nine_about(points, saddles.edges, saddles.strength, saddles.turn, k, nine)
+        reach = nine_about(points, saddles.edges, saddles.strength, saddles.turn, k, nine)
         seed = _seed(picture, points[nine], reach) if reach > 0 else None
         if seed is not None:
             yield seed
@@ -245,105 +228,6 @@ def _seed(picture: NDArray[np.uint8], corners: Array, reach: float) -> Array | N
     if not ((grid > 0) & (grid < [width, height])).all() or np.linalg.norm(grid[1, 1] - corners[4]) > 0.3 * reach:
         return None
     return grid if is_checkered(picture, grid) else None
-
-
-@compiled()
-def _nine_about(points: Array, edges: Array, strength: Array, turn: Array, k: int, nine: Index) -> float:
-    """Find the saddle `points` (N, 2) of a grid of 3 × 3 about the one with index `k`: `nine` indices, row by row.
-
-    Returns the shortest step from the middle to another one in px, 0 where there is no such grid. Neighbours along an
-    edge are sought among those whose light squares do not lie like those of the middle one.
-    """
-    near = _neighbours(points, k)
-    count = 0
-    for i in near:
-        if strength[i] >= ALIKE * strength[k]:
-            near[count] = i
-            count += 1
-    if count < len(nine):
-        return 0.0
-    near = near[:count]
-    along, down = new_table(3, 2), new_table(3, 2)
-    for steps, edge in ((along, edges[k, 0]), (down, edges[k, 1])):
-        steps[1, 0] = steps[1, 1] = 0.0
-        for side in (0, 2):
-            found = _next_along(points, turn, near, k, (side - 1) * edge[0], (side - 1) * edge[1])
-            if found < 0:
-                return 0.0
-            for axis in range(2):
-                steps[side, axis] = points[found, axis] - points[k, axis]
-    reach = math.inf
-    for row in range(3):
-        for one in range(3):
-            step = math.hypot(along[one, 0] + down[row, 0], along[one, 1] + down[row, 1])
-            if 0 < step < reach:
-                reach = step
-    for place in range(len(nine)):
-        u = points[k, 0] + along[place % 3, 0] + down[place // 3, 0]
-        v = points[k, 1] + along[place % 3, 1] + down[place // 3, 1]
-        found = _nearest(points, near, u, v)
-        away = math.hypot(u - points[found, 0], v - points[found, 1])
-        if away > ROUGHLY * reach:
-            return 0.0
-        for other in nine[:place]:
-            if other == found:
-                return 0.0
-        nine[place] = found
-    return reach
-
-
-@inlined()
-def _neighbours(points: Array, k: int) -> Index:
-    """The NEIGHBOURS of `points` (N, 2) that are nearest to the one with index `k`, and those as near as the last."""
-    wanted = min(NEIGHBOURS, len(points))
-    square = new_row(len(points))
-    for i in range(len(points)):
-        u, v = points[i, 0] - points[k, 0], points[i, 1] - points[k, 1]
-        square[i] = u * u + v * v
-    limit, count = float(NEIGHBOURS), 0
-    while count < wanted:  # the few within a circle are sooner put in order than all
-        limit *= 4
-        count = 0
-        for i in range(len(points)):
-            count += square[i] <= limit
-    within = new_row(count)
-    count = 0
-    for i in range(len(points)):
-        if square[i] <= limit:
-            within[count] = square[i]
-            count += 1
-    limit = smallest(within, wanted - 1)
-    near = new_indices(count)
-    count = 0
-    for i in range(len(points)):
-        if square[i] <= limit:
-            near[count] = i
-            count += 1
-    return near[:count]
-
-
-@inlined()
-def _next_along(points: Array, turn: Array, near: Index, k: int, way_u: float, way_v: float) -> int:
-    """Which of the points `near` (K,) comes next from the one with index `k` within 15° of a way; −1 if none."""
-    found, least = -1, math.inf
-    for i in near:
-        u, v = points[i, 0] - points[k, 0], points[i, 1] - points[k, 1]
-        along = u * way_u + v * way_v
-        ahead = 0 < along < least and abs(v * way_u - u * way_v) < FARTHEST_ASIDE * along
-        if ahead and not math.cos(2 * (turn[i] - turn[k])) > LIKE_ITSELF:  # NaN: not known
-            found, least = i, along
-    return found
-
-
-@inlined()
-def _nearest(points: Array, near: Index, u: float, v: float) -> int:
-    """Which of the points `near` (K,) is nearest to a place."""
-    found, least = -1, math.inf
-    for i in near:
-        square = (points[i, 0] - u) ** 2 + (points[i, 1] - v) ** 2
-        if square < least:
-            found, least = i, square
-    return found
 
 
 def _of_opencv(picture: NDArray[np.uint8], columns: int, rows: int) -> Iterator[Array]:

@@ -34,6 +34,8 @@ from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.known_planes.plane_deviations import followed_by_planes
 from core.scan.results import FrameRecord
 
+_READ_FRAMES = tuple(step.name for step in GRAPH if "scan" in step.reads)
+"""Steps that measure the pictures of the scan, whose log says whether they are simulated."""
 _MADE_IN_ORDER = tuple(made for step in GRAPH for made in step.makes)
 CLEARED = (*reversed(_MADE_IN_ORDER), "run")
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
@@ -191,7 +193,9 @@ class Workspace:
             record = replace(record, part=self.part)
         if measures:
             made_at = {**record.made_at, name: begun}
-            record = replace(record, measured_at=begun, made_at=made_at, simulated=self.recording_set.simulated)
+            record = replace(record, measured_at=begun, made_at=made_at)
+        if name in _READ_FRAMES:
+            record = replace(record, simulated=self.recording_set.simulated)
         if log.frames:
             record = replace(record, frames=tuple(log.frames))
         write_run(self.path("run"), record)
