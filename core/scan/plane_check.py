@@ -4,7 +4,7 @@ The network's numbers z of the planes (`core.scan.known_planes.known_plane`) are
 all is as calibrated. With H⁻¹ the inverse of its normal matrix and D what one standard uncertainty of each calibration
 does to ẑ, the covariance of ẑ is ::
 
-    V = (1 − C)(1 − C)ᵀ + E Eᵀ + N + D Dᵀ
+    V = (1 − C)(1 − C)ᵀ/l² + E Eᵀ + N + D Dᵀ
 
 C the block of H⁻¹ of the planes, E that of the planes with the fan's cells, N what the crossings' noise does. So
 ẑᵀ V⁻¹ ẑ is χ² distributed with three degrees of freedom a plane, less those that the sweeps say nothing of.
@@ -171,7 +171,7 @@ def check_by_planes(
     noise = equations.noise(solution).T @ (weight[:, None] * (solution.design @ of_planes))
     own = np.eye(len(z)) - of_planes[first:]
     cells = of_planes[equations.unknowns : first]
-    covariance = own @ own.T + cells.T @ cells + max(1.0, scan.scale) ** 2 * (noise.T @ noise)
+    covariance = own @ own.T / control.loosening**2 + cells.T @ cells + max(1.0, scan.scale) ** 2 * (noise.T @ noise)
     moves = np.array(
         [
             change_of_misclosures(
@@ -259,7 +259,7 @@ def _off(scan: ScanResult, camera: Camera, control: Control, number: int, z: Arr
     """How far the fan is off a plane, by z without its prior."""
     plane, mine = control.planes[number], _block(number)
     rays = camera.rays(scan.crossings.uv[scan.crossing_lines == control.fan.lines + number])
-    there = plane.pi + plane.factor @ z[mine]
+    there = plane.pi + control.factors[number] @ z[mine]
     ray = rays.mean(axis=0) if len(rays) else np.array([0.0, 0.0, 1.0])
     normal, other = (pi / np.linalg.norm(pi) for pi in (plane.pi, there))
     mm = float((normal @ ray) * (1 / (there @ ray) - 1 / (plane.pi @ ray)))

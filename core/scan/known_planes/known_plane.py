@@ -20,6 +20,10 @@ from core.model.arrays import Array, frozen_array, set_field
 
 FREEDOMS = 3
 """Numbers that a plane's error has."""
+# Held by tests/pipeline/steps/test_scan_with_planes.py.
+BESIDE_FAN = 100.0
+"""Times as far as it is known that a plane may lie off beside a fan. The network takes the fan as exact: planes tied as
+surely as they are known would pull sweeps to and fro wherever its calibration errs. So they only check it."""
 _CAMERA = 10
 """Parameters of the camera."""
 
@@ -123,7 +127,12 @@ class Control:
     @property
     def factors(self) -> Array:
         """Factors L (K, 3, 3) of the covariances of the known planes."""
-        return np.array([plane.factor for plane in self.planes]).reshape(-1, FREEDOMS, FREEDOMS)
+        return self.loosening * np.array([plane.factor for plane in self.planes]).reshape(-1, FREEDOMS, FREEDOMS)
+
+    @property
+    def loosening(self) -> float:
+        """By how many times the known planes may be farther off in the network than they are known to be."""
+        return BESIDE_FAN if self.fan.lines else 1.0
 
     @property
     def gradient(self) -> float:
