@@ -299,7 +299,7 @@ def test_a_cloud_of_another_calibration_is_refused(simulated, out):
     for step in ("gauge", "report"):
         said = trisect(step, simulated, "--out", out)
         assert said.code == 2
-        assert "cloud.ply: was measured with calibration" in said.sentence
+        assert "was measured with calibration" in said.sentence
 
 
 def test_output_folder_that_cannot_be_made(simulated, tmp_path):

@@ -26,7 +26,7 @@ ROOT = Path(workbench.__file__).parent
 ROOMS = {path.relative_to(ROOT).as_posix(): path for path in sorted(ROOT.rglob("*.py"))}
 """Every module of the workbench by its place in it."""
 
-ADOPTED = {("form.py", "editor")}
+ADOPTED = {("form.py", "editor"), ("import_dialog.py", "task")}
 """Given by the caller, and made the object's own child in the same function."""
 
 

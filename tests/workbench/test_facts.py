@@ -63,5 +63,5 @@ def test_each_reader_tells_the_facts_of_its_level_in_the_same_words(
             assert squeezed(part) in printed, (fact.title(WORDS), part)
     write_xlsx(tmp_path / "r.xlsx", content)
     rows = list(load_workbook(tmp_path / "r.xlsx")["facts"].iter_rows(min_row=2, values_only=True))
-    kept = [(name, unit, level) for of_, name, _, _, _, _, unit, level in rows if of_ == of]
+    kept = [(name, unit, level) for of_, name, _, _, _, _, _, unit, level in rows if of_ == of]
     assert kept == [(str(fact.label), fact.unit or None, int(fact.level)) for fact in facts]

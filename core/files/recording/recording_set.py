@@ -107,6 +107,8 @@ class RecordingSet:
     further: Mapping[Path, Mapping[int, Path]] = field(default_factory=dict)
     rig_hash: str = ""
     known_planes: tuple[PlanePictures, ...] = ()
+    _logs: dict[str, FolderLog] = field(default_factory=dict, repr=False)
+    """Of the parts, those that have been read."""
 
     def name_of(self, path: Path) -> str:
         """Return a picture's name within the set, as "camera/view00.png", wherever its file lies."""
@@ -149,8 +151,10 @@ class RecordingSet:
         return notes_on_not_read(self.folders.get(part))
 
     def log(self, part: str) -> FolderLog:
-        """Read the log of the recording of a part; empty where there is none."""
-        return FolderLog.of(self.folders.get(part))
+        """Read the log of the recording of a part, once; empty where there is none."""
+        if part not in self._logs:
+            self._logs[part] = FolderLog.of(self.folders.get(part))
+        return self._logs[part]
 
     @property
     def simulated(self) -> bool | None:

@@ -118,16 +118,26 @@ def _outer_edges(rectangle: Rectangle, search: EdgeSearch) -> Edges:
     given = rectangle.corners_px
     quad = _only(rectangle, seen, search.name) if given is None else _nearest(np.array(given), seen, factor)
     if rectangle.line_mm:
-        camera = None if search.camera is None else search.camera.scaled(1 / factor)
-        at_first = replace(search, picture=small, camera=camera)
-        unit, near = _sampling(THINNER * line * np.sqrt(_area(quad)))
-        quad = at_first.follow(quad, (max(near, ROUGH_PX),), unit=unit, thin=True).quad
-        quad = enlarged(at_first.follow(quad, (near, near), unit=unit, thin=True).quad, factor)
+        at_first = replace(search, picture=small, camera=None)
+        try:
+            quad = _roughly(quad, at_first, line)
+        except TargetNotFound:  # edges that the lens bends by more than their light reaches
+            if search.camera is None:
+                raise
+            quad = _roughly(quad, replace(at_first, camera=search.camera.scaled(1 / factor)), line)
+        quad = enlarged(quad, factor)
         unit, near = _sampling(THINNER * line * np.sqrt(_area(quad)))
         return search.follow(quad, (near, near), unit=unit, thin=True)
     quad = enlarged(quad, factor)
     near = GIVEN_WITHIN * _diagonal(quad) if given else min(4.0 * factor + 4, 0.1 * _diagonal(quad))
     return search.follow(quad, (near, min(NEAR_PX, near), min(NEAR_PX, near)))
+
+
+def _roughly(quad: Array, search: EdgeSearch, line: float) -> Array:
+    """The quadrilateral (4, 2) by its edges in a reduced picture; `line` is the line's width over its size."""
+    unit, near = _sampling(THINNER * line * np.sqrt(_area(quad)))
+    quad = search.follow(quad, (max(near, ROUGH_PX),), unit=unit, thin=True).quad
+    return search.follow(quad, (near, near), unit=unit, thin=True).quad
 
 
 def _nearest(given: Array, seen: DarkSquares, factor: int) -> Array:

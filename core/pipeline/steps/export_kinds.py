@@ -272,5 +272,5 @@ def write_export(kind: str, results: Results, path: Path, progress: Progress = s
         raise InputError(
             failure(origin or OURS, name, error),
             where=path,
-            todo=Message("advice.who_made_it", "bring it up to date, or ask who made it"),
+            todo=Message("advice.who_made_it", "install a newer version of it, or ask who made it"),
         ) from error

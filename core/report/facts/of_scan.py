@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +13,10 @@ from core.report.facts.fact import Fact, Reader
 from core.report.facts.of_checks import CHANCE
 from core.report.facts.pictures import Picture, used_fact
 from core.report.facts.table import Column, FactTable
-from core.scan.known_planes.points_on_planes import PlaneAgreement
-from core.scan.plane_check import PlaneCheck
+
+if TYPE_CHECKING:  # what is compiled: takes time that a window has not at its start
+    from core.scan.known_planes.points_on_planes import PlaneAgreement
+    from core.scan.plane_check import PlaneCheck
 
 SMALL_MM = 10.0
 """A scan that is smaller than this in all directions is told with decimals."""

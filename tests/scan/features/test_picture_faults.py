@@ -110,7 +110,9 @@ def test_a_refusal_asks_for_faults_and_for_no_notes(monkeypatch):
 
     monkeypatch.setattr(judgement, "reconstruct_twice", refuse)
     told = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    rig = SimpleNamespace(camera=SimpleNamespace(camera=None), fan=SimpleNamespace(fan=None), planes=())
+    rig = SimpleNamespace(
+        camera=SimpleNamespace(camera=None), fan=SimpleNamespace(fan=SimpleNamespace(lines=3)), planes=()
+    )
     for notes, faults in (((), told), (told, ())):
         with pytest.raises(InputError) as refused:
             judgement.solved_scan(SimpleNamespace(notes=notes, faults=faults), rig, ReconstructOptions(), None)

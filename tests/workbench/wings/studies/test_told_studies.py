@@ -105,7 +105,7 @@ def test_the_workbook_has_every_fact_with_its_number_in_full(study, tmp_path):
         value = finite(fact.value) if isinstance(fact.value, float) else fact.value
         words = isinstance(value, (str, Message))
         assert row[2] == (str(value) if words else value if value is None else pytest.approx(value, rel=1e-14))
-        assert row[6:] == (fact.unit or None, int(fact.level))
+        assert row[7:] == (fact.unit or None, int(fact.level))
 
 
 def test_a_workbook_of_no_study_has_no_sheet_of_them(tmp_path):
