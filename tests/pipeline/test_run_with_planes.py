@@ -1,6 +1,9 @@
 """A whole run with known planes in place of the fan, from rendered pictures to the report."""
 
+import shutil
 from pathlib import Path
+
+import pytest
 
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
@@ -35,3 +38,20 @@ def test_a_corner_of_printed_rectangles_measures_without_a_fan(tmp_path):
     assert abs(result.gauge.thickness_mm - 50.0) < result.gauge.U_mm
     assert OF_PLANES & {row.source for row in result.gauge.budget}
     assert (tmp_path / "out" / FILES["report"]).exists()
+
+
+@pytest.mark.accuracy
+def test_a_plate_beside_the_fan_moves_no_value_and_is_no_cause_for_alarm(tmp_path: Path) -> None:
+    """Tied as surely as it is known, the plate was told as moved: the fan's calibration errs by more."""
+    simulate_set(Scenario(scale=0.25, frames=24, seed=5, boards=BoardsBeside(plate=True)), tmp_path / "set")
+    beside = run(tmp_path / "set", tmp_path / "beside").gauge
+    codes = {note.code for note in read_run(tmp_path / "beside" / "run.json").notes["scan"]}
+    shutil.rmtree(tmp_path / "set" / "scan" / "planes")
+    rig = (tmp_path / "set" / "rig.toml").read_text()
+    before, _, table = rig.partition("[known_planes")
+    (tmp_path / "set" / "rig.toml").write_text(before + ("[" + table.partition("\n[")[2] if table else ""))
+    alone = run(tmp_path / "set", tmp_path / "alone").gauge
+    assert beside is not None and alone is not None
+    assert beside.thickness_mm == pytest.approx(alone.thickness_mm, abs=0.1 * alone.U_mm)
+    assert abs(beside.thickness_mm - 50.0) < beside.U_mm and not beside.doubts
+    assert "scan.planes_see_little" in codes or "scan.checked_by_planes" in codes
