@@ -28,7 +28,7 @@ from pathlib import Path
 from core.acquire.channel import Channel
 from core.errors import InputError
 from core.files.reading import file_hash, resolved
-from core.files.recording.recording_log import FolderLog
+from core.files.recording.recording_log import LOG, FolderLog
 from core.files.recording.rig import PLANE_TARGET, KnownPlaneTarget, Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
     NAMES_SHOWN,
@@ -107,8 +107,8 @@ class RecordingSet:
     further: Mapping[Path, Mapping[int, Path]] = field(default_factory=dict)
     rig_hash: str = ""
     known_planes: tuple[PlanePictures, ...] = ()
-    _logs: dict[str, FolderLog] = field(default_factory=dict, repr=False)
-    """Of the parts, those that have been read."""
+    _logs: dict[tuple[str, int], FolderLog] = field(default_factory=dict, repr=False)
+    """Those that have been read, by the part and when the file was written."""
 
     def name_of(self, path: Path) -> str:
         """Return a picture's name within the set, as "camera/view00.png", wherever its file lies."""
@@ -151,10 +151,13 @@ class RecordingSet:
         return notes_on_not_read(self.folders.get(part))
 
     def log(self, part: str) -> FolderLog:
-        """Read the log of the recording of a part, once; empty where there is none."""
-        if part not in self._logs:
-            self._logs[part] = FolderLog.of(self.folders.get(part))
-        return self._logs[part]
+        """Read the log of the recording of a part, once for as long as it stays as it is; empty where there is none."""
+        folder = self.folders.get(part)
+        file = None if folder is None else folder / LOG
+        key = part, file.stat().st_mtime_ns if file is not None and file.is_file() else 0
+        if key not in self._logs:
+            self._logs[key] = FolderLog.of(folder)
+        return self._logs[key]
 
     @property
     def simulated(self) -> bool | None:
