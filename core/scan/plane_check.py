@@ -6,7 +6,8 @@ does to ẑ, the covariance of ẑ is ::
 
     V = (1 − C)(1 − C)ᵀ/l² + E Eᵀ + N + D Dᵀ
 
-C the block of H⁻¹ of the planes, E that of the planes with the fan's cells, N what the crossings' noise does. So
+C the block of H⁻¹ of the planes, E that of the planes with the fan's cells, N what the crossings' noise does, l by how
+many times the network lets planes lie farther off than they are known to (`Control.loosening`). So
 ẑᵀ V⁻¹ ẑ is χ² distributed with three degrees of freedom a plane, less those that the sweeps say nothing of.
 
 Agreement alone is no check: what is hardly known agrees with everything. With M what usual changes of the rig do to ẑ,
