@@ -38,7 +38,7 @@ IN_ONE_PIECE = > "$$TRISECT_MADE_ONCE/$@" 2>&1; passed=$$?; cat "$$TRISECT_MADE_
 
 # Files with proofs: to import all the others takes each process as long as a proof. Those of SCREEN_ONLY are proven
 # where they are tested.
-PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
+PROOFS           = $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests | sort)
 PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
 # $(call prove,SURROUNDINGS,FILES): pytest would take no file for all of them.
 prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -p tests.passed_proofs -rs -n $(PROOFS_AT_ONCE) $(AS_MODULES) -m accuracy $(2)),true)
@@ -84,7 +84,7 @@ below_workbench: compile  ## every test but those of windows: what another Pytho
 	@# 5: there are only proofs in these files
 	$(if $(strip $(BELOW_WORKBENCH)),QT_QPA_PLATFORM=offscreen $(BIN)/pytest -p tests.time_left $(SIDE_BY_SIDE) $(BELOW_WORKBENCH) || [ $$? -eq 5 ])
 
-touched_below_workbench: $(READY) ## those of them that rest on something that has changed since all passed there (.ci/proven)
+touched_below_workbench: imports ## every module imported; those tests that name one that has changed since all passed there (.ci/proven)
 	@touched=$$($(BIN)/python -m tests.changed second) && $(MAKE) --no-print-directory below_workbench BELOW_WORKBENCH="$$touched"
 
 imports: $(READY)         ## import every module of the program

@@ -76,10 +76,15 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Long modules first, by what they took (`tests/durations.py`): one handed out last would keep a process alone."""
+    """Long modules first, by what they took (`tests/durations.py`): one handed out last would keep a process alone.
+
+    Proofs keep their order: of those that a change touches the nearest come first (`tests/changed.py`).
+    """
     seed = config.getoption("shuffled")
     if seed is not None:
         _shuffle(items, random.Random(seed))
+        return
+    if config.option.markexpr == "accuracy":
         return
     seconds = durations.read()
     usual = 1.0  # of a module that nobody has measured: among the short ones

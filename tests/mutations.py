@@ -24,7 +24,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.changed import PACKAGES, ROOT, Tree, files_of_tests
+from tests.changed import ROOT, files_of_tests
+from tests.rests_on import PACKAGES, Tree
 
 NEAREST = 6
 """Files of tests that are tried first, by themselves: most changes are noticed by these, without collecting all."""

@@ -6,23 +6,24 @@ from pathlib import Path
 
 import pytest
 
+from core.findings import of_proof
+from core.findings.table import all_findings as finding_codes
 from core.wing import Wing
 from tests.changed import (
-    ASKED_FOR_BY,
     PASSED,
     PROVEN,
     ROOT,
-    Tree,
     below_workbench,
     changed_since,
     packing_changed,
     proofs_of,
+    readers_of,
     take_over,
-    touched_modules,
     touched_on_second,
     touched_proofs,
     tree_to_prove,
 )
+from tests.rests_on import ASKED_FOR_BY, Tree
 
 MARK = "@pytest.mark." + "accuracy"  # in two pieces, or this module were taken for one of proofs
 FILES = {
@@ -102,7 +103,7 @@ def commit_all(checkout) -> str:
 
 def add_to(checkout, path):
     with (checkout / path).open("a", encoding="utf-8") as file:
-        file.write("ADDED = 1\n")
+        file.write("assert True\n")
 
 
 def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
@@ -151,6 +152,82 @@ def test_a_module_that_is_gone_counts_as_changed_and_so_does_a_committed_change(
 def test_comments_and_docstrings_are_no_change(checkout):
     (checkout / "core/deep.py").write_text('"""How deep."""\n\n# in floors\nDEPTH = 1\n', encoding="utf-8")
     assert run_again(checkout) == set()
+
+
+def write(checkout, path, text):
+    (checkout / path).write_text(text, encoding="utf-8")
+
+
+MANY = """from core.deep import DEPTH, OTHER
+USED, UNUSED = 1, 2
+ALONE = 3
+def far():
+    return inner() + DEPTH
+def inner():
+    return Held.value
+def unused():
+    return OTHER
+class Held:
+    value = 1
+    def method(self):
+        return late()
+def late():
+    import core.started as started
+    return started.HERE
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "before", "after", "proofs"),
+    [
+        ("core/far.py", "inner() +", "inner() -", {"far"}),
+        ("core/far.py", "value = 1", "value = 2", {"far"}),
+        ("core/far.py", "Held.value", "Held().value", {"far"}),
+        ("core/far.py", "return OTHER", "return 1", set()),
+        ("core/far.py", "ALONE = 3", "ALONE = 4", set()),
+        ("core/far.py", "import DEPTH, OTHER", "import DEPTH", set()),
+        ("core/far.py", "import DEPTH, OTHER", "import OTHER as DEPTH", {"far"}),
+        ("core/deep.py", "DEPTH = 1", "DEPTH = 2", {"far"}),
+        ("core/deep.py", "OTHER = 2", "OTHER = 3", set()),
+        ("core/started.py", "HERE = 1", "HERE = 2", {"far", "run"}),
+        ("core/started.py", "THERE = 1", "THERE = 2", {"run"}),
+        ("core/started.py", "registered(HERE)", "registered(2)", {"far", "run"}),
+    ],
+)
+def test_of_a_module_only_what_is_reached_counts(checkout, path, before, after, proofs):
+    """A text that names a module reaches all of it."""
+    write(
+        checkout, "tests/test_far.py", f"import pytest\nfrom core.far import far\n{MARK}\ndef test_far():\n    far()\n"
+    )
+    write(checkout, "core/far.py", MANY)
+    write(checkout, "core/deep.py", "DEPTH = 1\nOTHER = 2\n")
+    write(checkout, "core/started.py", "HERE = 1\nTHERE = 1\nregistered(HERE)\n")
+    commit = commit_all(checkout)
+    write(checkout, PROVEN, f"proofs {commit}\n")
+    assert run_again(checkout) == set()
+    text = (checkout / path).read_text(encoding="utf-8")
+    assert before in text
+    write(checkout, path, text.replace(before, after))
+    assert run_again(checkout) == proofs
+
+
+@pytest.mark.parametrize(
+    ("after", "proofs"), [("how deep: {n}", {"run"}), ("deep", {"far", "run"}), ("{n:.3f} deep", {"run"})]
+)
+def test_words_of_a_sentence_count_where_sentences_are_read(checkout, after, proofs):
+    """Another place in it is more than words: a value would be missing."""
+    write(checkout, "core/deep.py", "DEPTH = Message('a.b', '{n} deep', n=1)\n")
+    write(checkout, "core/cli/app.py", "from core import deep\nSHOWN = deep.DEPTH\n")
+    write(checkout, PROVEN, f"proofs {commit_all(checkout)}\n")
+    write(checkout, "core/deep.py", f"DEPTH = Message('a.b', '{after}', n=1)\n")
+    assert run_again(checkout) == proofs
+
+
+def test_what_a_change_is_nearest_to_is_proven_first(checkout):
+    add_to(checkout, "core/deep.py")
+    add_to(checkout, "core/cli/app.py")
+    add_to(checkout, "core/far.py")
+    assert [path.stem for path in touched_proofs(checkout, proofs_of(checkout))] == ["test_far", "test_run"]
 
 
 @pytest.mark.parametrize("text", ["", "proofs\n", "proofs {0}\npacking {0}\n".format("0123456789" * 4)])
@@ -229,12 +306,14 @@ def on_second(checkout):
     return {path.stem.removeprefix("test_") for path in touched}
 
 
-def test_a_second_python_runs_what_rests_on_a_change_since_all_passed_there(checkout):
+def test_a_second_python_runs_what_names_a_changed_module_since_all_passed_there(checkout):
     assert on_second(checkout) == PROOFS | {"quick"}, "never all yet"
     with (checkout / PROVEN).open("a", encoding="utf-8") as file:
         file.write(f"second {commit_all(checkout)}\n")
     assert on_second(checkout) == set()
     add_to(checkout, "core/deep.py")
+    assert on_second(checkout) == {"quick"}, "it names the module; the other reaches it by way of one"
+    add_to(checkout, "core/far.py")
     assert on_second(checkout) == {"far", "quick"}, "whether proofs or not"
     note(checkout, **dict.fromkeys(PROOFS, "b" * 40))
     take_over(checkout)
@@ -261,13 +340,32 @@ def test_no_proof_of_this_project_is_overlooked(proofs):
 
 def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(proofs):
     """A change of a command or a drawing would touch nearly every proof, as each tells findings."""
-    rests_on = Tree(ROOT).closure(["core.findings.table"])
+    tree = Tree(ROOT)
+    rests_on = tree.closure(["core.findings.table"])
     assert not {name for name in rests_on if name.startswith("core.cli")}
-    assert "core.wings.studies.findings" in rests_on and len(rests_on) < 50
-    assert len(proofs[Path("tests/accuracy/test_coverage.py")]) < 400
+    assert "core.wings.studies.findings" in rests_on and len({name.partition(":")[0] for name in rests_on}) < 50
+    assert len({name.partition(":")[0] for name in proofs[Path("tests/accuracy/test_coverage.py")]}) < 400
     commands = {f"core.wings.{wing}.commands" for wing in ("geometry", "studies", "rig_planning")}
-    assert commands <= Tree(ROOT).closure(["core.cli.app"])
-    assert "core.wings.studies.printed" in Tree(ROOT).closure(["core.pipeline.steps.brought_sections"])
+    assert commands <= tree.closure(["core.cli.app"])
+    assert "core.wings.studies.printed" in tree.closure(["core.pipeline.steps.brought_sections"])
+
+
+def test_each_finding_is_rested_on_by_who_names_its_code(proofs):
+    """A row that nobody reached would be left out of every proof: tables of findings change often, most rows never."""
+    tree = Tree(ROOT)
+    codes = set(finding_codes()) - {row.code for row in of_proof.ROWS}  # of these the codes are put together
+    reached = {name for name in tree.closure(["core.cli.app", "workbench.app"]) if name.partition(":")[2] in codes}
+    assert len(reached) == len(codes) > 100
+    of_boards = {name.partition(":")[2] for name in proofs[Path("tests/image/targets/test_checkerboard.py")]}
+    assert not of_boards & {code for code in codes if code.startswith("scan.")}
+
+
+def test_a_proof_of_pictures_rests_on_little_of_the_program(proofs):
+    """Where it imports a module, it does not rest on all that this has for others."""
+    program = {name for name in Tree(ROOT).closure(["core.cli.app"]) if name.startswith("core.")}
+    of_boards = {name for name in proofs[Path("tests/image/targets/test_checkerboard.py")] if name.startswith("core.")}
+    assert "core.image.targets.checkerboard" in of_boards
+    assert len(of_boards) < len(program) / 8
 
 
 def test_who_asks_for_what_a_wing_names_is_known():
@@ -282,7 +380,7 @@ def test_who_asks_for_what_a_wing_names_is_known():
 
 def test_files_that_no_proof_reads_touch_no_module():
     """An empty name would be one that every module with an empty text in it names."""
-    assert touched_modules({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
+    assert readers_of({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
 
 
 def test_no_proof_of_numbers_rests_on_the_window(proofs):
