@@ -203,7 +203,7 @@ class PointErrors:
         """
         _, stripe = np.unique((cloud.sweep - cloud.sweep.min()) * (part.max() + 1) + part, return_inverse=True)
         length = np.where(cloud.sweep < 0, self.speckle_px, self.correlation_px)
-        along = np.floor(_along(cloud.uv, stripe) / length).astype(np.int64)
+        along = np.floor(along_stripes(cloud.uv, stripe) / length).astype(np.int64)
         if self.speckle is not None:
             known = place >= 0
             stripe = np.where(known, stripe.max() + 1 + part, stripe)
@@ -241,8 +241,8 @@ def pairs(first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.int
     return np.asarray(np.unique(first * (second.max() + 1) + second, return_inverse=True)[1], dtype=np.int64)
 
 
-def _along(uv: Array, stripe: NDArray[np.int64]) -> Array:
-    """Where (px) each point lies along the main direction of its stripe, from the middle of its points."""
+def along_stripes(uv: Array, stripe: NDArray[np.int64]) -> Array:
+    """Compute where (N,) in px points lie along the main direction of their `stripe` (N,), from the middle of it."""
     count = np.bincount(stripe)
     centred = uv - np.column_stack([np.bincount(stripe, uv[:, k]) / count for k in range(2)])[stripe]
     u, v = centred.T

@@ -55,6 +55,28 @@ def gain_of(points, outward):
     return _gain_of_noise(cloud, outward, gain, PointErrors(common=common))
 
 
+def test_two_places_of_a_stretch_tell_what_a_displaced_calibration_does_to_all_its_points():
+    points, outward, _ = stripe()
+    count = len(points)
+    one, sweep = np.ones(count), np.zeros(count, dtype=np.int64)
+    cloud = Cloud(points, CAMERA.project(points), 0.01 * one, one, sweep, sweep, np.zeros((count, 3)))
+    bent = Camera(CAMERA.image_size, CAMERA.matrix * [[1.001, 1, 1.002], [1, 0.999, 1], [1, 1, 1]], [0.01, 0, 1e-3, 0])
+    common = CommonErrors(
+        CAMERA.image_size,
+        ("camera", "fan"),
+        np.array([parameters_of(camera) for camera in (CAMERA, bent, CAMERA)]),
+        np.zeros((3, 3, 3)),
+        np.array([PLANE, PLANE, 1.001 * PLANE])[:, None],
+    )
+    errors = PointErrors(common=common, correlation_px=50.0)
+    weights = np.linspace(0.5, 1.0, count)
+    sources = Sources.of(cloud, outward, weights, sweep, sweep, errors)
+    changes = common.changes(cloud.uv, cloud.sweep)
+    of_points = np.column_stack([sources.mean((change * outward).sum(axis=1)) for change in changes])
+    assert len(of_points) < count / 5
+    np.testing.assert_allclose(sources.common, of_points, atol=2e-4 * np.abs(of_points).max())
+
+
 @pytest.mark.parametrize("size", [3, 6])
 def test_the_information_of_all_stretches_is_that_of_few_rows_a_sweep(size):
     rng, sweeps, cells = np.random.default_rng(3), 7, 5
