@@ -89,7 +89,7 @@ class ParallelPlanes:
         return np.hstack([np.zeros((3, len(self.centres))), self.axes])
 
     def misfit(self, points: Array, part: Parts) -> Array:
-        distance: Array = (points - self.centres[part]) @ self.outward_normal
+        distance: Array = self._away(points, part) @ self.outward_normal
         return distance
 
     def outward(self, points: Array, part: Parts) -> Array:
@@ -97,7 +97,11 @@ class ParallelPlanes:
 
     def design(self, points: Array, part: Parts) -> Array:
         height = (part[:, None] == np.arange(len(self.centres))).astype(np.float64)
-        return np.hstack([height, -(points - self.centres[part]) @ self.axes])
+        return np.hstack([height, -self._away(points, part) @ self.axes])
+
+    def _away(self, points: Array, part: Parts) -> Array:
+        """(N, 3) from the centre of each point's face; one for all is not looked up for each."""
+        return points - (self.centres if len(self.centres) == 1 else self.centres[part])
 
     def moved(self, step: Array) -> ParallelPlanes:
         count = len(self.centres)

@@ -53,7 +53,9 @@ ROUNDS = 40
 HUBER_ROUNDS = 8
 """First rounds, with Huber's weights: they have one solution, near which Tukey's then start."""
 STEPS = 3
-"""Steps of the generalised fit; shapes are all but linear so near to their place."""
+"""Steps of the generalised fit, at most; shapes are all but linear so near to their place."""
+AT_REST = 1e-6
+"""In mm or rad: a step that moves no parameter by more is the last one, as the next moves it by its square."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -148,6 +150,8 @@ def fit_surface(
             design = sources.mean(shape.design(points, mine))
             fit = generalised_fit(design, sources.mean(shape.misfit(points, mine)), sources)
             shape = shape.moved(fit.estimate)
+            if np.abs(fit.estimate).max() < AT_REST:
+                break
     except np.linalg.LinAlgError as error:
         raise _not_fixed(shape, used, errors) from error
     if not spanned(shape, points, used.sigma, mine):
