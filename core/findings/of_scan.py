@@ -67,9 +67,6 @@ ROWS = (
     Finding("scan.board_off", Weight.CAUTION, Effect.NONE,
             "The board {board} moved or is bent: the fan, which agrees with the others, has it {mm:.2g} mm aside and "
             "turned by {degrees:.2g}°, {times:.1f} times what is expected. It is not used."),
-    Finding("scan.board_disagrees", Weight.CAUTION, Effect.NONE,
-            "No point of the sweeps on the board {board} agrees with fan and other boards: it is not used. It moved, "
-            "or something stands before it."),
     Finding("scan.checked_by_planes", Weight.INFORMATION, Effect.NONE,
             "Checked in this scan: the fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), so camera and "
             "fixed laser are as calibrated."),
@@ -83,11 +80,6 @@ ROWS = (
             "Fan and {boards:and} disagree in this scan: {mm:.2g} mm and {degrees:.2g}°, {times:.1f} times what is "
             "expected. Most likely {cause}. The scan is measured by the fan alone: check the rig with the plane "
             "target.",
-            fact="planes_disagree"),
-    Finding("scan.planes_not_tied", Weight.GRAVE, Effect.NO_PROOF,
-            "Fan and {boards:and} disagree so much in this scan that the sweeps cannot agree with both. Most likely a "
-            "board moved, or camera or fixed laser did since the calibration. The scan is measured by the fan alone: "
-            "check the rig with the plane target.",
             fact="planes_disagree"),
     # What fixes the scale of heights
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,

@@ -60,7 +60,6 @@ from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut, row_forms
-from core.scan.print_on_boards import printed_on_boards
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import change_of_misclosures
 from core.scan.standstill import LEAST_SEEN_SHARE, movements_of
@@ -153,7 +152,7 @@ def compare_causes(
     solution = equations.weighted(replace(WEIGHTS, rounds=1), solution)
     if has_collapsed(equations, solution.pis):
         return ()
-    seen, shifts, noise_px = fan_shifts(features, printed_on_boards(features.fan, scan.fan_lines, bent, camera))
+    seen, shifts, noise_px = fan_shifts(features, scan.printed)
     noise_px = np.maximum(noise_px, LEAST_NOISE_PX)
     movements = possible_movements(scan.movements, seen, shifts, noise_px)
     candidates = [

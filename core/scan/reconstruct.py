@@ -6,7 +6,7 @@ No picture is needed here, so a scan can be solved again in a second with anothe
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -29,13 +29,12 @@ from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.known_planes.known_plane import Control, KnownPlane
-from core.scan.known_planes.points_on_planes import PlaneAgreement, frames_across, points_on_planes
+from core.scan.known_planes.points_on_planes import frames_across
 from core.scan.method import Method, ReconstructOptions
-from core.scan.network.adjustment import SILENCED
 from core.scan.network.datum import Datum, datum_of, free_directions, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
-from core.scan.network.geometry import CrossingRays
 from core.scan.network.read_out import AT_ONCE, ReadOut
+from core.scan.plane_points import agreements, firm_points
 from core.scan.print_on_boards import printed_on_boards
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
@@ -44,7 +43,7 @@ from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, largest_rigid_interva
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
-from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces, free_turns
+from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces
 from core.scan.sweeps.locate import (
     LocatedSweeps,
     by_sweep,
@@ -52,7 +51,6 @@ from core.scan.sweeps.locate import (
     locate_together,
     number_fan_lines,
     numbered,
-    sweeping_frames,
 )
 from core.scan.sweeps.moving import hand_notes, read_out_of
 
@@ -105,7 +103,7 @@ def reconstruct(
 ) -> ScanResult:
     """Locate the sweeps of a scan and triangulate its points; `fan_lines` is a numbering of the fan known before.
 
-    The network ties the sweeps to known `planes` as well; a fan without lines leaves these alone.
+    Sweeps are tied to known `planes` where there is no fan; beside one these only tell print from light.
 
     Raises
     ------
@@ -118,20 +116,14 @@ def reconstruct(
     progress("network", 0, 3)
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
-    control, seen = Control(fan), 0
-    if planes and _together(options):
-        on_planes, of_plane = points_on_planes(features, planes, camera)
-        seen = len(on_planes)
-        firm = _held_from_turning(crossings.followed_by(on_planes), camera)[len(crossings) :]
-        on_planes, of_plane = on_planes.select(firm), of_plane[firm]
-        used = np.unique(of_plane)
-        control = Control(fan, tuple(planes[number] for number in used))
-        crossings = crossings.followed_by(on_planes)
-        line = np.concatenate([line, fan.lines + np.searchsorted(used, of_plane)])
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
+    control = Control(fan)
     if not fan.lines:
-        if not control.planes:
-            raise _refused(too_bright, *_why_none_met(seen, frames_across(features, planes)))
+        points = firm_points(features, planes if _together(options) else (), crossings, camera)
+        if not points.planes:
+            raise _refused(too_bright, *_why_none_met(points.seen, frames_across(features, planes)))
+        control = Control(fan, points.planes)
+        crossings, line = points.added_to(crossings, line, fan.lines)
         _require_planes(crossings, line, control, camera)
     if not np.any(crossings.with_fan):
         raise _refused(
@@ -177,7 +169,7 @@ def reconstruct(
     records = bounces.counted(frame_records(features, *of_met, sweeps.frames, cloud, camera))
     sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
     progress("network", 3, 3)
-    return ScanResult(
+    result = ScanResult(
         cloud=cloud,
         pis=sweeps.pis,
         covariance=sweeps.covariance,
@@ -209,8 +201,9 @@ def reconstruct(
         rig_explained=None if solved.explanation is None else solved.explanation.share,
         rows_seen_to_roll=solved.read_out.moves and options.row_time_us is None,
         crossing_lines=line,
-        planes=_plane_fits(control, crossings, line, solved, camera),
+        printed=printed,
     )
+    return replace(result, planes=agreements(result, camera, control)) if control.planes else result
 
 
 def _drifted(watched: FanRest, solved: _Solved, *, has_fan: bool) -> bool | None:
@@ -218,18 +211,6 @@ def _drifted(watched: FanRest, solved: _Solved, *, has_fan: bool) -> bool | None
     if has_fan:
         return watched.drifts if watched.known else None
     return False if solved.moved is False else None
-
-
-def _held_from_turning(crossings: CrossingTable, camera: Camera) -> NDArray[np.bool_]:
-    """Mask (M,) of the crossings of sweeps that meet more than one straight line.
-
-    A sheet known along one line alone is free to turn about it, and would fall onto the board that it is seen on.
-    """
-    if not len(crossings):
-        return np.zeros(0, dtype=np.bool_)
-    frames = sweeping_frames(crossings)
-    free = free_turns(by_sweep(crossings, frames), CrossingRays.of(crossings, camera), len(frames))
-    return ~np.isin(crossings.a, frames[free.any(axis=1)])
 
 
 def _require_planes(crossings: CrossingTable, line: NDArray[np.int64], control: Control, camera: Camera) -> None:
@@ -277,27 +258,6 @@ def _why_none_met(points: int, across: int) -> tuple[Message, Message]:
         "there is no fan, and no sweep is seen on a known plane, so nothing says where the hand-held laser was",
     )
     return what, ADD_BOARDS
-
-
-def _plane_fits(
-    control: Control, crossings: CrossingTable, line: NDArray[np.int64], solved: _Solved, camera: Camera
-) -> tuple[PlaneAgreement, ...]:
-    """How the sweeps' points on each known plane agree with it."""
-    fits, frames = [], solved.sweeps.frames
-    located = crossings.on_plane & np.isin(crossings.a, frames)
-    for number, plane in enumerate(control.planes):
-        mine = np.flatnonzero(located & (line == control.fan.lines + number))
-        used = mine[solved.weights[mine] > SILENCED]
-        uv = crossings.uv[used]
-        rays, sweep = camera.rays(uv), np.searchsorted(frames, crossings.a[used])
-        inverse = np.einsum("mi,mi->m", rays, solved.read_out.planes(solved.sweeps.pis[sweep], uv[:, 1]))
-        off_mm = 1 / inverse - 1 / (rays @ plane.pi)
-        rms_mm = float(np.sqrt(np.mean(off_mm**2))) if len(used) else 0.0
-        left_out = len(mine) - len(used)
-        fits.append(
-            PlaneAgreement(plane.name, len(used), len(np.unique(sweep)), left_out, rms_mm, plane.pi, plane.outline)
-        )
-    return tuple(fits)
 
 
 def _refused(too_bright: Message | None, what: Message, todo: Message) -> InputError:

@@ -80,6 +80,8 @@ class ScanResult:
         (M,) the fan's line of each crossing, from 0; −1 between sweeps; known planes are numbered after the lines.
     planes
         What the sweeps' points on each known plane say of it.
+    printed
+        (C,) which of the fan's centrelines are print on known planes, and no light.
     """
 
     cloud: Cloud
@@ -108,6 +110,7 @@ class ScanResult:
     rows_seen_to_roll: bool = False
     crossing_lines: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     planes: tuple[PlaneAgreement, ...] = ()
+    printed: NDArray[np.bool_] | None = None
 
     @property
     def needs_cause(self) -> bool:

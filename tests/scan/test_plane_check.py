@@ -6,6 +6,7 @@ from core.calibrate.change import changes
 from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.known_planes.plane_deviations import followed_by_planes
 from core.scan.plane_check import DISAGREES, _told, check_by_planes
+from core.scan.plane_points import with_plane_points
 from core.scan.reconstruct import reconstruct
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan
@@ -33,9 +34,9 @@ def plate(exact, name="plate", *, off_mm=0.0, sd_mm=SD_MM):
 
 def checked(exact, plane):
     camera, fan = exact.rig.camera, exact.rig.fan
-    scan = reconstruct(exact.measured(1), camera, fan, planes=[plane])
+    features = exact.measured(1)
+    scan, control = with_plane_points(reconstruct(features, camera, fan), features, camera, Control(fan, (plane,)))
     assert scan.planes[0].points > 100
-    control = Control(fan, (plane,))
     return check_by_planes(
         scan, camera, control, [], followed_by_planes(changes(camera, fan), camera, control, scale_sd=0.0)
     )

@@ -22,8 +22,9 @@ FREEDOMS = 3
 """Numbers that a plane's error has."""
 # Held by tests/pipeline/steps/test_scan_with_planes.py.
 BESIDE_FAN = 100.0
-"""Times as far as it is known that a plane may lie off beside a fan. The network takes the fan as exact: planes tied as
-surely as they are known would pull sweeps to and fro wherever its calibration errs. So they only check it."""
+"""Times as far as it is known that a plane may lie off where the fan is checked by it: so the sweeps alone say where it
+is. They are not tied to planes beside a fan: the network takes it as exact, and wherever its calibration errs the two
+would pull them to and fro."""
 _CAMERA = 10
 """Parameters of the camera."""
 
@@ -131,7 +132,7 @@ class Control:
 
     @property
     def loosening(self) -> float:
-        """By how many times the known planes may be farther off in the network than they are known to be."""
+        """By how many times known planes may be farther off in the equations than they are known to be."""
         return BESIDE_FAN if self.fan.lines else 1.0
 
     @property

@@ -15,7 +15,7 @@ from core.files.results.planes_file import planes_id
 from core.findings.proof import Doubt, ScanFacts, notes_of
 from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
-from core.messages import Message, plain
+from core.messages import Message
 from core.pipeline.steps.scan.known_planes import told_of_boards
 from core.pipeline.steps.workspace import Calibration, Workspace, planes_of
 from core.progress import Progress, silent
@@ -31,6 +31,7 @@ from core.scan.known_planes.plane_deviations import followed_by_planes, own_devi
 from core.scan.known_planes.points_on_planes import note_on_planes_alone
 from core.scan.method import Method, ReconstructOptions
 from core.scan.plane_check import PlaneCheck, check_by_planes
+from core.scan.plane_points import with_plane_points
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 
@@ -42,7 +43,7 @@ class Solved:
     features: ScanFeatures
     scan: ScanResult
     calibration: Calibration
-    """With the known planes that were used."""
+    """With the known planes that sweeps are tied to; where there is a fan, none are."""
     check: PlaneCheck | None = None
     """Of camera and fan by the known planes; None where there is no fan, or no plane."""
     notes: tuple[Message, ...] = ()
@@ -112,81 +113,65 @@ def solved_scan(
 ) -> Solved:
     """Locate a scan's sweeps and triangulate its points, twice where its surface bends.
 
-    Where there is a fan, a known plane that it alone disagrees with, or on which no point agrees, is left out; all are
-    if it disagrees with more, or only without them the scan can be solved. `of_boards` are notes on the boards that
-    were looked for.
+    Without a fan sweeps are tied to the known planes. Where there is one these check it, and move no value: a plane
+    that it alone disagrees with is left out of that. `of_boards` are notes on the boards
+    that were looked for.
 
     Raises
     ------
     InputError
         If it cannot be solved; what is wrong with its pictures is told first, what is wrong with its boards last.
     """
-    notes, has_fan = list(of_boards), calibration.fan.fan.lines > 0
     planes = calibration.planes if options.method == Method.NETWORK else ()
+    with told_of_boards(of_boards), cause_first(partial(at_fault, features.faults)):
+        found = reconstruct_twice(features, calibration.camera.camera, calibration.fan.fan, options, progress, planes)
+    solved = Solved(*found, calibration.with_planes(planes), notes=tuple(of_boards))
+    return _checked_by_planes(solved) if calibration.fan.fan.lines else _tied_to_planes(solved)
 
-    def solve(planes: Sequence[KnownPlane]) -> tuple[ScanFeatures, ScanResult]:
-        camera, fan = calibration.camera.camera, calibration.fan.fan
-        with told_of_boards(notes), cause_first(partial(at_fault, features.faults)):
-            return reconstruct_twice(features, camera, fan, options, progress, planes)
 
-    def alone(disagreement: Message, found: tuple[ScanFeatures, ScanResult], check: PlaneCheck | None) -> Solved:
-        notes.append(disagreement)
-        return Solved(*found, calibration.with_planes(()), check, tuple(notes), disagreement)
+def _tied_to_planes(solved: Solved) -> Solved:
+    """Keep the known planes that sweeps without a fan are tied to, and tell how they agree."""
+    planes, not_met = _met(solved.calibration.planes, solved.scan)
+    notes = (*solved.notes, *not_met, note_on_planes_alone(solved.scan.planes))
+    return replace(solved, calibration=solved.calibration.with_planes(planes), notes=notes)
 
-    while True:
-        try:
-            found = solve(planes)
-        except InputError:
-            by_fan = _solved_by_fan(solve) if planes and has_fan else None
-            if by_fan is None:
-                raise
-            return alone(_not_tied(planes), by_fan, None)
-        met = {one.name: one.points for one in found[1].planes}
-        notes.extend(note_of("scan.board_not_met", board=one.name) for one in planes if one.name not in met)
-        planes = tuple(one for one in planes if one.name in met)
-        if not has_fan:
-            notes.append(note_on_planes_alone(found[1].planes))
-        if not planes or not has_fan:
-            return Solved(*found, calibration.with_planes(planes), notes=tuple(notes))
-        agreeing = tuple(one for one in planes if met[one.name])
-        if not agreeing:
-            return alone(_not_tied(planes), solve(()), None)
-        if agreeing != planes:
-            notes.extend(note_of("scan.board_disagrees", board=one.name) for one in planes if not met[one.name])
-            planes = agreeing
-            continue
-        check = _check(found[1], calibration.with_planes(planes))
-        if check.agrees:
-            # with a wrong board, what disagrees may have been left out as if something had moved
-            by_fan = _solved_by_fan(solve) if _complains(found[1]) else None
-            if by_fan is not None and not _complains(by_fan[1]):
-                return alone(_not_tied(planes), by_fan, None)
-            return Solved(*found, calibration.with_planes(planes), check, (*notes, check.note))
-        off = check.alone_off
-        if off is None:
-            return alone(check.note, solve(()), check)
+
+def _checked_by_planes(solved: Solved) -> Solved:
+    """Check the fan by the known planes of a scan that was solved with it alone, one that is off alone left out."""
+    calibration, notes, check = solved.calibration, list(solved.notes), None
+    planes = calibration.planes
+    while planes:
+        scan, control = with_plane_points(
+            solved.scan, solved.features, calibration.camera.camera, calibration.with_planes(planes).control
+        )
+        solved = replace(solved, scan=replace(solved.scan, planes=scan.planes))
+        planes, not_met = _met(planes, scan)
+        notes.extend(not_met)
+        if not planes:
+            break
+        check = _check(scan, calibration.with_planes(control.planes))
+        off = None if check.agrees else check.alone_off
         notes.append(check.note)
+        if off is None:
+            break
         planes = tuple(one for one in planes if one.name != off.name)
+    disagreement = None if check is None or check.agrees else check.note
+    return replace(
+        solved,
+        calibration=calibration.with_planes(()),
+        check=check,
+        notes=tuple(notes),
+        disagreement=disagreement,
+    )
 
 
-def _solved_by_fan(
-    solve: Callable[[Sequence[KnownPlane]], tuple[ScanFeatures, ScanResult]],
-) -> tuple[ScanFeatures, ScanResult] | None:
-    """The scan solved by the fan alone; None if it cannot be: what is told of that is told of the tied one already."""
-    try:
-        return solve(())
-    except InputError:
-        return None
-
-
-def _complains(scan: ScanResult) -> bool:
-    """Whether a solution has to say that something moved or is not as calibrated."""
-    return bool(scan.moved) or scan.fan_disagrees or scan.collapsed or scan.rig_changed
-
-
-def _not_tied(planes: Sequence[KnownPlane]) -> Message:
-    """The note that no solution ties the sweeps to both fan and known planes."""
-    return note_of("scan.planes_not_tied", boards=tuple(plain(one.name) for one in planes))
+def _met(planes: Sequence[KnownPlane], scan: ScanResult) -> tuple[tuple[KnownPlane, ...], tuple[Message, ...]]:
+    """Those of the known planes that sweeps of a scan meet, and notes on the others."""
+    met = {one.name for one in scan.planes}
+    return (
+        tuple(one for one in planes if one.name in met),
+        tuple(note_of("scan.board_not_met", board=one.name) for one in planes if one.name not in met),
+    )
 
 
 def _check(scan: ScanResult, calibration: Calibration) -> PlaneCheck:
