@@ -22,7 +22,14 @@ STUDIES = "studies"
 """Our own wing that reads studies."""
 GEOMETRY = "geometry"
 """Our own wing that compares the part with other surfaces, and measures orientation, position and deviation."""
-OUR_COMMANDS: Mapping[str, str] = {"compare": GEOMETRY, "plan": "rig_planning", "study": STUDIES}
+AUDIT = "audit"
+"""Our own wing that keeps the trail of a project's changes, and knows who may make them."""
+OUR_COMMANDS: Mapping[str, str] = {
+    "compare": GEOMETRY,
+    "plan": "rig_planning",
+    "study": STUDIES,
+    **dict.fromkeys(("verify", "audit", "people"), AUDIT),
+}
 """The commands of our own wings, and which wing each is of: known where the wing's folder is gone, too."""
 OUR_KINDS: Mapping[str, str] = dict.fromkeys(("parallelism", "perpendicularity", "position", "deviation"), GEOMETRY)
 """The kinds of features of our own wings, likewise."""
@@ -82,6 +89,9 @@ class Wing:
     reads_study
         "module:name" of a function of the path of a study.json that gives the `core.report.content.ReportedStudy`, or
         raises InputError; "": it reads none.
+    witness
+        "module:name" of the `core.files.project.witness.Witness` that is told of what is written into projects, in a
+        module that is light to import; "": none.
     """
 
     name: str
@@ -92,6 +102,7 @@ class Wing:
     exports: str = ""
     feature_kinds: str = ""
     reads_study: str = ""
+    witness: str = ""
 
 
 class Named(Protocol):

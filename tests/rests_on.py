@@ -23,6 +23,7 @@ PROGRAM = "trisect"
 PACKAGES = ("core", "workbench", "trisect", "resources", "tests")
 ASKED_FOR_BY = {
     "core.cli.app": ("commands",),
+    "core.files.project.witness": ("witness",),
     "core.files.results.export_list": ("exports",),
     "core.findings.table": ("findings",),
     "core.inspect.plan.kinds": ("feature_kinds",),

@@ -31,15 +31,14 @@ import numpy as np
 
 from core.files.folder_lock import alone_in
 from core.files.pictures import read_picture
-from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import backups, create_project, read_project, recoverable, write_autosave, write_project
 from core.files.project.lock import take_lock
 from core.files.recording.recorder import Recorder
 from core.files.recording.set_listing import scan_frames
 from core.files.recording.unfinished import unfinished_recording
-from core.pipeline.project.verify import verify
 from core.settings.options import Options
+from tests.simulated import trisect
 
 Tell = Callable[[int], None]
 SET, OUT = "set", "out"
@@ -268,9 +267,8 @@ def soak(kind: str, kills: int, seed: int, work: Path) -> int:
         held += acknowledged
         take_lock(folder).release()
         does.whole(folder, acknowledged)
-        found = verify(folder)
-        assert found.problems == (), found.problems
-        assert read_trail(folder).problems == ()
+        found = trisect("verify", folder)
+        assert found.code == 0, found
     return held
 
 

@@ -345,7 +345,7 @@ def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(proofs):
     assert not {name for name in rests_on if name.startswith("core.cli")}
     assert "core.wings.studies.findings" in rests_on and len({name.partition(":")[0] for name in rests_on}) < 50
     assert len({name.partition(":")[0] for name in proofs[Path("tests/accuracy/test_coverage.py")]}) < 400
-    commands = {f"core.wings.{wing}.commands" for wing in ("geometry", "studies", "rig_planning")}
+    commands = {f"core.wings.{wing}.commands" for wing in ("audit", "geometry", "studies", "rig_planning")}
     assert commands <= tree.closure(["core.cli.app"])
     assert "core.wings.studies.printed" in tree.closure(["core.pipeline.steps.brought_sections"])
 

@@ -9,7 +9,6 @@ import pytest
 from core.cli import language
 from core.cli.app import whole_command
 from core.cli.simulating import HELP_VALUES
-from core.files.project.audit import append, read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
 from core.translations import PSEUDO
@@ -65,8 +64,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         ("import", tmp_path / "new", "--camera", simulated / "camera", "--dry-run"),
         ("import", tmp_path / "new", "--camera", simulated / "camera"),
         ("check", simulated, "--out", out, "--history"),
-        ("verify", out, "--set", simulated),
-        ("people", project),
         ("pack", project, "--out", tmp_path / "p.trisectz"),
         ("unpack", tmp_path / "p.trisectz", "--out", tmp_path / "again"),
     ]
@@ -75,21 +72,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         for words in commands
     }
     assert {command: words for command, words in left.items() if words} == {}
-
-
-def test_the_audit_trail_has_no_untranslated_word_but_names_of_fields_and_what_people_wrote(tmp_path):
-    project = tmp_path / "project"
-    create_project(project, ProjectFile(new_project("2026")))
-    append(project, "measured", files={"camera.json": "0" * 64})
-    append(project, "reported")
-    own = {
-        word for entry in read_trail(project).entries for one in entry.changes for word in words_of(one.field, one.new)
-    }
-    who = words_of(read_trail(project).entries[0].who, read_trail(project).entries[0].host)
-    assert len(own) > 20
-    assert left_in_english("audit", project, "--remark", "seen by the customer") - own - set(who) == {
-        *("seen", "the", "customer")
-    }
 
 
 def words_of(*texts):

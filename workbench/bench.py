@@ -8,7 +8,8 @@ from typing import Any
 
 from PySide6.QtCore import QObject
 
-from workbench.language import tr
+from core.files.project.witness import unwitnessed
+from workbench.language import text_of, tr
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
@@ -47,7 +48,14 @@ class Bench:
     @property
     def cannot_write(self) -> str:
         """Reason why nothing can be measured into the open project; "" if it can."""
-        return tr("The project is read-only: go on in a copy (File, Save a copy).") if self.model.is_read_only else ""
+        read_only = tr("The project is read-only: go on in a copy (File, Save a copy).")
+        return self.unwitnessed or (read_only if self.model.is_read_only else "")
+
+    @property
+    def unwitnessed(self) -> str:
+        """Reason why the open project cannot be changed, in no copy either, as a wing is not there; "" if it can."""
+        refused = None if self.model.folder is None else unwitnessed(self.model.folder)
+        return "" if refused is None else text_of(refused)
 
     def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
         """Run a long `job(*args)` in the worker process, its progress in the status bar; a notice shows an error."""

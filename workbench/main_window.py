@@ -37,7 +37,6 @@ from workbench.menus import OF_A_PAGE, MenuFacts, Menus, why_not
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.project.actions import ProjectActions
-from workbench.pages.project.audit import ask_reason
 from workbench.pages.project.console import ProjectConsole
 from workbench.pages.project.double_click import choose_double_click
 from workbench.pages.project.many_sets import ManySets
@@ -70,7 +69,7 @@ from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import StatusBar, TaskBar, time_left
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
-from workbench.wing import opened_by_entries
+from workbench.wing import guard_project, opened_by_entries
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
@@ -195,7 +194,7 @@ class MainWindow(QMainWindow):
 
     def leave_operator_mode(self) -> None:
         """Leave the operator mode for all pages; if people have roles, only after an inspector's PIN."""
-        if self.operator_mode.on and self.projects.may_leave_operator_mode():
+        if self.operator_mode.on and self.model.guard.may_leave_operator_mode():
             self.operator_mode.turn(False)
             self._show_mode()
 
@@ -329,8 +328,6 @@ class MainWindow(QMainWindow):
             "copy": projects.copies.save_copy,
             "pack": projects.copies.pack,
             "unpack": projects.copies.choose_packed,
-            "audit": projects.show_audit_trail,
-            "sign in": projects.sign_in,
             "close": projects.close_project,
             "quit": self.leave,
             **{name: partial(self.presenter_action, name) for name in OF_A_PAGE},
@@ -381,7 +378,7 @@ class MainWindow(QMainWindow):
         self.model.results_changed.connect(self._refreshing.soon)
         self.model.modified.connect(self._show_name)
         self.model.failed.connect(self.bench.notices.failed)
-        self.model.ask_reason = partial(ask_reason, self)
+        guard_project(self.bench, self)
         for presenter in self.presenters.values():
             presenter.changed.connect(self._refreshing.soon)
             presenter.go_to.connect(self.go_to)

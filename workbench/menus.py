@@ -70,8 +70,6 @@ NEED_A_PROJECT = (
     "copy",
     "pack",
     "export",
-    "audit",
-    "sign in",
     "operator mode",
     "console",
     "script",
@@ -193,8 +191,7 @@ class Menus(QObject):
         self._add(file, "pack", tr("Pac&k into one file …"))
         self._add(file, "unpack", tr("&Unpack a project …"))
         self.actions["export"] = file.addMenu(exports)
-        self._add(file, "audit", tr("Au&dit trail …"))
-        self._add(file, "sign in", tr("S&ign in or out …"))
+        self._add_brought(file, "export")
         self._add(file, "close", tr("&Close project"))
         self._add(file, "quit", tr("&Quit"))
 
@@ -251,10 +248,14 @@ class Menus(QObject):
         action.triggered.connect(lambda: do())
         menu.addAction(action)
         self.actions[name] = action
-        for entry, opens in self._brought.items():
-            if entry.after == name and entry.name not in self.actions:
-                self._add(menu, entry.name, tr(entry.text), opens)
+        self._add_brought(menu, name)
         return action
+
+    def _add_brought(self, menu: QMenu, after: str) -> None:
+        """Add the entries of wings that stand behind the entry `after`."""
+        for entry, opens in self._brought.items():
+            if entry.after == after and entry.name not in self.actions:
+                self._add(menu, entry.name, tr(entry.text), opens)
 
     def _languages(self) -> QMenu:
         """Each language by its own name, so that it is found in any language."""

@@ -11,7 +11,6 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from core.errors import InputError
-from core.files.project.audit import append
 from core.files.project.data import Done, Project, ProjectFile, new_project
 from core.files.project.folder import (
     can_be_saved,
@@ -24,7 +23,7 @@ from core.files.project.folder import (
     write_project,
 )
 from core.files.project.lock import ProjectLock, lock_owner, take_lock
-from core.files.project.people import Person, Rules, needs_reason, read_rules, refused, with_pin
+from core.files.project.witness import Signed, Written, unwitnessed, witnessed
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
 from workbench.language import language_name
@@ -86,6 +85,34 @@ class Edit(QUndoCommand):
         return True
 
 
+class EditGuard:
+    """Guard of changes in the window: what may be changed, and by whom. This one lets everything pass, by nobody."""
+
+    signed_in: Signed | None = None
+    """Who has signed in, and changes the project."""
+
+    def read(self, folder: Path | None) -> Callable[[], None]:
+        """Read what holds in the project in `folder`, and return what puts it in force; None: no project.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read: the project is not opened then.
+        """
+        return lambda: None
+
+    def reason(self, label: str, before: ProjectFile, after: Project) -> str | None:
+        """Return the reason for the edit called `label`, "" where it needs none; None: it is not to be made."""
+        return ""
+
+    def stay_signed_in(self, person: Signed | None) -> None:
+        """Keep `person`, who was at the last project, signed in where that person may."""
+
+    def may_leave_operator_mode(self) -> bool:
+        """Whether all pages may be shown again; asks who wants that where not everybody may."""
+        return True
+
+
 class ProjectModel(QObject):
     """State of the program: project (choices of the user; undoable) and results (facts, never undone)."""
 
@@ -108,10 +135,9 @@ class ProjectModel(QObject):
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
         self._complaint = ""
-        self.rules, self._why = Rules(), ""
-        self.signed_in: Person | None = None
-        self.ask_reason: Callable[[str], str] = lambda label: ""
-        """Asks for the reason of the edit of this name; nothing: it is not to be made."""
+        self._why = ""
+        self.guard = EditGuard()
+        """A wing may put another one in its place."""
         self._lock: ProjectLock | None = None
         self._access = Access.ALONE
         self._states_of: tuple[ProjectFile | None, str] = None, ""
@@ -175,6 +201,8 @@ class ProjectModel(QObject):
         """Return the error that says why the open project cannot be changed on the disk; None if it can."""
         if self.folder is None:
             return None
+        if (refused := unwitnessed(self.folder)) is not None:
+            return refused
         if self._access is Access.READ_ONLY:
             return InputError(
                 Message("project.opened_read_only", "is open read only: nothing here is saved"),
@@ -224,6 +252,7 @@ class ProjectModel(QObject):
             If there is none, or it is damaged or of a newer program; neither matters with a `version`.
         """
         folder = path.parent if path.name == "project.json" else path
+        access = Access.READ_ONLY if unwitnessed(folder) is not None else access
         saved = None
         if version is None:
             version = saved = read_project(folder)
@@ -245,40 +274,18 @@ class ProjectModel(QObject):
     def edit(self, label: str, after: Project, merge_key: str = "") -> None:
         """Replace the project by `after` as one undoable edit called `label`; an equal project is no edit.
 
-        Nor if whoever has signed in may not change it, which is told, or a reason is wanted and none is given.
+        Nor if the guard does not let it pass, who says why.
         """
         if after == self.project:
             return
-        refusal = refused(self.rules, self.signed_in, self.project, after)
-        wanted = refusal is None and needs_reason(self.rules, self.results, self.project, after)
-        why = self.ask_reason(label) if wanted else ""
-        if refusal is not None or (wanted and not why):
-            if refusal is not None:
-                self.failed.emit(refusal)
+        why = self.guard.reason(label, self._file, after)
+        if why is None:
             self.changed.emit(self.project, self.project)  # editors show again what is in force
             return
         self.undo_stack.push(Edit(label, self.project, after, self._show, merge_key))
         if why:
             self._why = why
             self.save_by_itself()  # the reason is nowhere else
-
-    def sign_in(self, name: str, pin: str) -> None:
-        """Sign a person in as the author of all further changes; InputError if name and PIN do not match.
-
-        What was done before cannot be undone by somebody who may not.
-        """
-        self.signed_in = with_pin(self.rules, name, pin)
-        self.undo_stack.clear()
-
-    def stay_signed_in(self, person: Person | None) -> None:
-        """Keep `person`, of the last project, signed in if this project has the same person and PIN."""
-        if person is not None and person in self.rules.people:
-            self.signed_in = person
-
-    def sign_out(self) -> None:
-        """Sign the person out; further changes are recorded without a name."""
-        self.signed_in = None
-        self.undo_stack.clear()
 
     def record(self, step: str, done: Done | None) -> None:
         """Record the result of a step; None records that there is none any more."""
@@ -333,7 +340,7 @@ class ProjectModel(QObject):
         self._save.stop()
         if (refused := self.why_read_only()) is not None:
             raise refused
-        write_project(self.folder, self._file, keep_s=keep_s, why=self._why, by=self.signed_in)
+        write_project(self.folder, self._file, keep_s=keep_s, why=self._why, by=self.guard.signed_in)
         self._why = ""
         remove_autosave(self.folder)
         self._saved = self._file
@@ -387,23 +394,30 @@ class ProjectModel(QObject):
             self.modified.emit(self.is_modified)
 
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None, access: Access) -> None:
-        lock, rules = None, Rules() if folder is None else read_rules(folder)
+        lock, put_in_force = None, self.guard.read(folder)
         if folder is not None and access is not Access.READ_ONLY and can_be_saved(folder):
             if self._lock is not None and self._lock.folder == folder and access is not Access.TAKE_OVER:
                 lock = self._lock  # the project that is open is opened once more
             else:
-                before = lock_owner(folder)
-                lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
-                if before is not None:
-                    append(folder, "taken over", why=f"{before.owner}@{before.host}")
+                lock = _locked(folder, take_over=access is Access.TAKE_OVER)
         if self._lock is not None and self._lock is not lock:
             self._lock.release()
         self._lock, self._access = lock, access
         self.folder, self._file, self._saved, self._complaint = folder, file, saved, ""
-        self.rules, self.signed_in, self._why = rules, None, ""
+        self._why = ""
+        put_in_force()
         self.undo_stack.clear()
         self._accepted.clear()
         for step, done in file.results.items():
             self._remember(step, done)
         self.opened.emit()
         self.modified.emit(self.is_modified)
+
+
+def _locked(folder: Path, *, take_over: bool) -> ProjectLock:
+    """Lock a project for this program; taking it over from another is a change that witnesses see."""
+    before = lock_owner(folder)
+    if before is None:
+        return take_lock(folder, take_over=take_over)
+    with witnessed(folder, Written("taken over", why=f"{before.owner}@{before.host}")):
+        return take_lock(folder, take_over=take_over)

@@ -28,6 +28,7 @@ from core.wing import WINDOW_GROUP, Found, found_wings, note_on_no_wings
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.notices import Notices
+from workbench.project_model import EditGuard
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,8 +38,11 @@ Thing = TypeVar("Thing")
 
 OURS = "workbench.wings"
 
-_NO_WIDGET = Message("plugin.why_no_widget", "what it makes is no widget")
-_NO_LAYER = Message("plugin.why_no_layer", "what it makes is no layer of the surface")
+_NOT_OF: Mapping[type, Message] = {
+    QWidget: Message("plugin.why_no_widget", "what it makes is no widget"),
+    QObject: Message("plugin.why_no_layer", "what it makes is no layer of the surface"),
+    EditGuard: Message("plugin.why_no_guard", "what it makes is no EditGuard"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +189,9 @@ class WindowWing:
     below_repeats
         "module:name" of a function of the presenter of the page Inspect that returns a `RepeatsPart`, a widget that
         stands below the statistics of the repeats; "": nothing.
+    guard
+        "module:name" of a function of (`Bench`, `QMainWindow`) that returns the `workbench.project_model.EditGuard`:
+        it decides on changes of the open project. The first one counts; "": none.
     """
 
     name: str
@@ -192,6 +199,7 @@ class WindowWing:
     tabs: tuple[InspectTab, ...] = ()
     layers: tuple[InspectLayer, ...] = ()
     below_repeats: str = ""
+    guard: str = ""
 
 
 @cache
@@ -208,6 +216,14 @@ def opened_by_entries(bench: Bench, window: QMainWindow) -> Mapping[MenuEntry, C
         bench.notices.warning(text_of(note))
     entries = ((one, one.opens, one.name, origin) for wing, origin in window_wings().wings for one in wing.entries)
     return dict(_made(bench, entries, bench, window))
+
+
+def guard_project(bench: Bench, window: QMainWindow) -> None:
+    """Have a wing's guard decide on changes of the open project; a notice tells of those that cannot be made."""
+    guards = ((wing, wing.guard, wing.name, origin) for wing, origin in window_wings().wings if wing.guard)
+    for _, guard in _made(bench, guards, bench, window, kind=EditGuard):
+        bench.model.guard = guard
+        return
 
 
 def inspect_tabs(bench: Bench, presenter: QObject) -> Sequence[tuple[InspectTab, Any]]:
@@ -345,7 +361,7 @@ def _made(
         except Exception as error:  # noqa: BLE001  (whatever a stranger's page raises: the window opens)
             why = f"{type(error).__name__}: {error}"
         else:
-            why = "" if isinstance(made, kind) else _NO_WIDGET if kind is QWidget else _NO_LAYER
+            why = "" if isinstance(made, kind) else _NOT_OF[kind]
         if why:
             bench.notices.warning(text_of(note_on_unusable(Brought(name, made, why, origin))))
         else:

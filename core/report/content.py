@@ -60,10 +60,10 @@ class CalibrationMark:
 
 
 @dataclass(frozen=True, slots=True)
-class AuditMark:
-    """Entry of the project's audit trail a report was made at: its number, and its SHA-256 in hex."""
+class Evidence:
+    """SHA-256 in hex that is printed behind the settings, and the sentence that says of what it is."""
 
-    n: int
+    text: Message
     sha256: str
 
 
@@ -303,8 +303,8 @@ class ReportContent:
         What the report is printed on, and the language of its fixed words.
     template
         The company's own in it.
-    audit
-        Where the project's audit trail stood; None where there is none.
+    evidence
+        What wings have printed behind the settings, so that it can be compared later.
     attachments
         By name, the JSON files of the results as they are, to go into the file.
     simulated
@@ -363,7 +363,7 @@ class ReportContent:
     paper: Paper = "A4"
     language: str = "en"
     template: ReportTemplate = field(default_factory=ReportTemplate)
-    audit: AuditMark | None = None
+    evidence: tuple[Evidence, ...] = ()
     attachments: Mapping[str, bytes] = field(default_factory=dict)
     simulated: bool | None = None
     view: SeenFrom | None = None

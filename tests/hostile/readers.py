@@ -25,12 +25,10 @@ from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.film import is_film, read_film
 from core.files.pictures import compression_of, read_picture
 from core.files.plan.plan_file import read_plan, write_plan
-from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project
 from core.files.project.lock import lock_owner, take_lock
 from core.files.project.packing import pack_project, unpack_project
-from core.files.project.people import Rules, person, read_rules, write_rules
 from core.files.project.report_template import read_report_template
 from core.files.recording.features_file import read_poses, read_views, write_views
 from core.files.recording.import_pictures import earlier_imports
@@ -127,8 +125,6 @@ READERS = {
     "logo": Reader("logo.png", lambda path: read_report_template(path.with_name("template.toml"))),
     "scenario": Reader("scenario.toml", Scenario.read),
     "project": Reader("project/project.json", read_project),
-    "audit": Reader("project/audit.jsonl", lambda path: read_trail(path.parent)),
-    "people": Reader("project/people.json", lambda path: read_rules(path.parent)),
     "lock": Reader("project/.lock.json", lambda path: lock_owner(path.parent)),
     "packed": Reader("packed.trisectz", _packed),
     "camera": Reader("camera.json", read_camera),
@@ -268,7 +264,6 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     create_project(folder / "project", ProjectFile(new_project("a")))
     pack_project(folder / "project", folder / "packed.trisectz")
     take_lock(folder / "project")
-    write_rules(folder / "project", Rules((person("Anna", "administrator", "anna-1"),), reasons=True))
     poses = _poses(folder / "planes.npz")
     seen = tuple(SeenView(pose.name, pose.view, None, (1024, 768)) for pose in poses)
     write_views(folder / "views.npz", "key", SeenViews(seen, "camera"))

@@ -63,7 +63,7 @@ KEYS = (
 )  # fmt: skip
 
 DIALOGS = (
-    "new", "import", "next part", "copy", "audit", "sign in", "keys", "double click", "many sets", "manual",
+    "new", "import", "next part", "copy", "keys", "double click", "many sets", "manual",
     *(entry.name for wing in window_wings() for entry in wing.entries),
 )  # fmt: skip
 """Entries of the menus that open a window of their own, those of the wings among them."""

@@ -22,7 +22,6 @@ from workbench.language import choose, tr
 from workbench.main_window import SMALLEST, MainWindow
 from workbench.menus import SHORTCUTS
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.step_page import StepPage
 from workbench.steps import STEPS
@@ -168,7 +167,6 @@ def test_menus_and_dialogs_have_room_on_the_smallest_screen_and_cut_no_word(
         for dialog in (
             ShortcutList([(key, tr(meaning)) for _, key, meaning in SHORTCUTS], window),
             ImportDialog(bench, measured_project / "imported", window),
-            AuditWindow(bench, measured_project, window),
         ):
             needed = dialog.minimumSizeHint()
             assert needed.width() <= SCREEN.width() and needed.height() <= SCREEN.height(), type(dialog)

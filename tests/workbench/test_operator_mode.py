@@ -11,7 +11,6 @@ import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QApplication
 
-from core.files.project.people import Rules, person, write_rules
 from core.inspect.conformity import Verdict
 from core.inspect.result_list import ResultList
 from tests.workbench.clipped import clipped
@@ -68,7 +67,7 @@ def test_the_worst_result_is_told_large_and_nothing_else_can_be_done(operator: M
     assert page.buttons["report"].isEnabled() and page.buttons["next_part"].isEnabled()
     assert page.buttons["measure"].toolTip() == "Everything is done."
     assert page.buttons["stop"].toolTip() == "Nothing is running."
-    for name in ("step inspect", "save", "open", "new", "run", "whole", "language de", "sign in"):
+    for name in ("step inspect", "save", "open", "new", "run", "whole", "language de"):
         assert entries[name].toolTip() == "Leave operator mode first.", name
     assert not entries["undo"].isVisible()
     assert entries["next part"].isEnabled() and entries["full"].isEnabled()
@@ -78,23 +77,6 @@ def test_whoever_leaves_it_is_where_he_was(operator: MainWindow, qtbot: Any) -> 
     operator.operator.leaving.click()
     assert operator.pages["project"].isVisible() and operator.menuBar().isVisible()
     assert operator.menus.actions["step inspect"].isEnabled() and operator.menus.actions["undo"].isVisible()
-
-
-def test_where_people_have_roles_an_inspectors_pin_leads_out(
-    window: MainWindow, measured_project: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    people = (person("Ada", "administrator", "1234"), person("Bo", "operator", "5678"))
-    write_rules(measured_project, Rules(people))
-    window.model.open(measured_project)
-    window.enter_operator_mode()
-    answers: list[tuple[str, str] | None] = [None, ("Ada", "0000"), ("Bo", "5678"), ("Ada", "1234")]
-    monkeypatch.setattr(ask, "ask_name_and_pin", lambda *_: answers.pop(0))
-    for said in ("", "do not belong together", "inspector or administrator"):
-        window.operator.leaving.click()
-        assert window.operator_mode.on and window.operator.isVisible()
-        assert said in window.operator.banner.text()
-    window.operator.leaving.click()
-    assert not window.operator_mode.on
 
 
 def test_where_the_part_goes_is_shown_with_its_outline_until_it_is_measured_under_another_rig(

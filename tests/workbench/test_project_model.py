@@ -8,13 +8,10 @@ from typing import Any
 import pytest
 
 from core.errors import InputError
-from core.files.project.audit import read_trail
 from core.files.project.data import Project, new_project
 from core.files.project.folder import backups, read_project, recoverable
 from core.files.project.keys import finished
 from core.files.project.lock import LOCK, ProjectInUse
-from core.files.project.people import Rules, person, write_rules
-from core.files.recording.rig import GaugeSpec
 from core.translations import language
 from workbench.language import choose
 from workbench.project_model import Access, ProjectModel
@@ -226,60 +223,3 @@ def test_the_result_of_an_accepted_calibration_comes_back_with_it(model: Project
 
 def accepting(project: Project, id_: str) -> Project:
     return replace(project, accepted=replace(project.accepted, camera=id_))
-
-
-def test_whoever_may_not_change_something_is_told_and_nothing_changes_until_somebody_signs_in_who_may(
-    model: ProjectModel, tmp_path: Path
-) -> None:
-    folder = tmp_path / "block"
-    write_rules(folder, Rules((person("Anna", "administrator", "anna-1"), person("Ole", "operator", "0000"))))
-    model.open(folder)
-    told: list[InputError] = []
-    shown: list[Project] = []
-    model.failed.connect(told.append)
-    model.changed.connect(lambda before, after: shown.append(after))
-    before = model.project
-    wanted = with_nominal(before, 50.0)
-    model.edit("change nominal", wanted)
-    assert (model.project, shown) == (before, [before])
-    assert "only an administrator may change this; sign in" in str(told[0])
-    with pytest.raises(InputError):
-        model.sign_in("Anna", "0000")
-    model.sign_in("Anna", "anna-1")
-    model.edit("change nominal", wanted)
-    model.save()
-    assert model.project == wanted
-    last = read_trail(folder).entries[-1]
-    assert (last.what, last.by, last.role) == ("saved", "Anna", "administrator")
-    model.sign_out()
-    assert not model.undo_stack.canUndo()
-    model.edit("rename", renamed(model.project, "Other"))
-    assert model.project.info.name == "Other"
-
-
-def test_the_reason_for_limits_changed_after_a_result_is_in_the_trail_at_once_and_without_one_nothing_changes(
-    model: ProjectModel, tmp_path: Path
-) -> None:
-    folder = tmp_path / "block"
-    write_rules(folder, Rules(reasons=True))
-    model.open(folder)
-    asked: list[str] = []
-    answers = ["", "as the customer wished"]
-
-    def answer(label: str) -> str:
-        asked.append(label)
-        return answers[len(asked) - 1]
-
-    model.ask_reason = answer
-    model.edit("first nominal", with_nominal(model.project, 50.0))
-    model.record("gauge", finished("gauge", model.project, model.results))
-    model.edit("other nominal", with_nominal(model.project, 51.0))
-    assert model.project.rig.gauge == GaugeSpec(50.0, 0.1)
-    model.edit("other nominal", with_nominal(model.project, 51.0))
-    assert asked == ["other nominal"] * 2
-    last = read_trail(folder).entries[-1]
-    assert (last.why, [change.field for change in last.changes]) == ("as the customer wished", ["rig.gauge.nominal_mm"])
-
-
-def with_nominal(project: Project, nominal: float) -> Project:
-    return replace(project, rig=replace(project.rig, gauge=GaugeSpec(nominal, 0.1)))

@@ -37,7 +37,7 @@ from workbench.views.plots.base import Plot
 from workbench.wing import window_wings
 
 OPENED = (
-    "new", "open", "open set", "import", "next part", "copy", "pack", "unpack", "audit", "sign in", "quick card",
+    "new", "open", "open set", "import", "next part", "copy", "pack", "unpack", "quick card",
     *(entry.name for wing in window_wings() for entry in wing.entries), "script", "keys", "double click", "about",
 )  # fmt: skip
 """The entries of the menus that open a dialog."""

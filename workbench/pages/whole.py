@@ -23,17 +23,19 @@ EDIT = "whole job"
 """What it accepts is one edit, undone as a whole."""
 
 
-def why_not_measure_all(*, running: bool, live: bool, left: frozenset[str], scan_chosen: bool, read_only: bool) -> str:
+def why_not_measure_all(
+    *, running: bool, live: bool, left: frozenset[str], scan_chosen: bool, cannot_write: str
+) -> str:
     """Return the reason why all steps cannot be done now; "" if they can. `left`: steps not up to date.
 
     `running`: it is being done, or waits for its turn. `live`: a live source is on, or what it recorded is still being
-    put into the project. `scan_chosen`: pictures of a scan are. `read_only`: nothing can be written into the project.
+    put into the project. `scan_chosen`: pictures of a scan are. `cannot_write`: why nothing can be written into it.
     """
     return first(
         why(running, tr("Everything is being measured.")),
         why(live, tr("Stop the live source first.")),
         why(not left, tr("Everything is done.")),
-        why(read_only, tr("The project is read-only: go on in a copy (File, Save a copy).")),
+        cannot_write,
         why(
             "scan" in left and not scan_chosen,
             tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan."),
@@ -72,7 +74,7 @@ class MeasuringAll(QObject):
             live=self._bench.live.busy or model.is_recording,
             left=frozenset(left_to_do(model.project, model.results)),
             scan_chosen=bool(model.project.sources.scan),
-            read_only=model.is_read_only,
+            cannot_write=self._bench.cannot_write,
         )
 
     def start(self) -> None:

@@ -6,9 +6,9 @@ Layout::
     PROJECT/NAME.trisect            what a double click opens the project by; says nothing itself
     PROJECT/.lock.json              who has the project open
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
-    PROJECT/people.json             who may do what, by names with PINs; there only if it was set up
+    PROJECT/people.json             who may do what, by names with PINs: of a wing; there only if it was set up
     PROJECT/view.json               how the surface was left in 3D, for a figure of the report
-    PROJECT/audit.jsonl             who changed what and when, what was measured; only grows
+    PROJECT/audit.jsonl             who changed what and when, what was measured: of the same wing; only grows
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording
     PROJECT/calibrations/           every calibration that was kept
@@ -18,7 +18,6 @@ Layout::
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 import time
@@ -31,11 +30,10 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, remove, vanished, write_bytes, write_text
-from core.files.project.audit import Signed, What, append
-from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
 from core.files.project.keys import relocated
+from core.files.project.witness import Signed, Written, unwitnessed, witnessed
 from core.files.reading import resolved
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import read_rig
@@ -106,7 +104,7 @@ def write_project(
     keep_s
         Keep the version before only if none was kept within so many seconds.
     why, by
-        For the audit trail: the reason for what is changed, and who has signed in.
+        For those who witness the change: the reason for it, and who has signed in.
 
     Raises
     ------
@@ -129,17 +127,16 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
     before = _readable(path)
     if before == file:
         return
+    if (refused := unwitnessed(folder)) is not None:
+        raise refused
     now = datetime.now().astimezone()
     created = file.created or (before.created if before else None) or now
     text = project_text(replace(file, created=created, saved=now), path)
     try:
         if path.exists():
             _keep(folder / BACKUPS, path, keep_s)
-        # First the trail: a change that stands in it and was cut off is found again, one that does not never would be.
-        told: What = "saved" if path.exists() else "created"
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        append(folder, told, differences(before, file), why=why, state=digest, by=by)
-        write_text(path, text)
+        with witnessed(folder, Written("saved" if path.exists() else "created", before, file, text, why, by)):
+            write_text(path, text)
     except OSError as error:
         raise cannot_write(path, error) from error
     put_opener(folder)

@@ -13,8 +13,8 @@ from core.files.project.calibration_store import FOLDER as CALIBRATIONS
 from core.files.project.data import Project, ProjectFile, Sources
 from core.files.project.folder import create_project, read_project, require_free, source_folder
 from core.files.project.keys import relocated
-from core.files.project.people import Person, read_rules, write_rules
 from core.files.project.report_template import logo_beside
+from core.files.project.witness import Signed, Written, witnessed
 from core.files.reading import resolved
 from core.files.results.nominal_surface import nominal_names
 from core.held_files import rename
@@ -27,13 +27,13 @@ KEPT = ("camera", "planes")
 
 
 def next_part(
-    folder: Path, to: Path, serial: str, operator: str, by: Person | None = None, progress: Progress = silent
+    folder: Path, to: Path, serial: str, operator: str, by: Signed | None = None, progress: Progress = silent
 ) -> Path:
     """Make the project `to` for the next part of the series in the project `folder`, and return its path.
 
     Taken over: rig, settings, accepted calibrations and their history, the pictures of calibration and check where they
-    lie, features with their limits, the report's choices and template, the people and their roles. Left behind: the
-    recording and everything measured on it, temperatures, notes, repeats and studies.
+    lie, features with their limits, the report's choices and template; by a wing, the people and their roles. Left
+    behind: the recording and everything measured on it, temperatures, notes, repeats and studies.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def next_part(
     serial, operator
         Of the next part, and of who measures it; neither may be empty.
     by
-        Who has signed in, for the audit trail.
+        Who has signed in, for those who witness it.
 
     Raises
     ------
@@ -60,12 +60,11 @@ def next_part(
     with folder_beside(to) as beside:
         made = make_folder(beside / to.name)
         create_project(made, _renewed(folder, file, serial.strip(), operator.strip(), to.name))
-        for path in steps(copied, progress, "copying", len(copied)):
-            place = made / path.relative_to(resolved(folder))
-            place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, place)
-        if (rules := read_rules(folder)).people or rules.reasons:
-            write_rules(made, rules, by)
+        with witnessed(made, Written("next part", by=by, of=folder)):
+            for path in steps(copied, progress, "copying", len(copied)):
+                place = made / path.relative_to(resolved(folder))
+                place.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(path, place)
         rename(made, to)
     return to
 

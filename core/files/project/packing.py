@@ -27,14 +27,13 @@ from core.files.atomic import folder_beside, write_beside
 from core.files.complaints import checked_json
 from core.files.json_text import to_json
 from core.files.limits import TEXT_BYTES, check_bytes, check_file
-from core.files.project.audit import AUDIT, append
-from core.files.project.changes import differences
 from core.files.project.data import ProjectFile
 from core.files.project.folder import AUTOSAVE, PROJECT, read_project, require_free, source_folder
 from core.files.project.json_form import project_text
 from core.files.project.keys import relocated
 from core.files.project.lock import LOCK
 from core.files.project.report_template import logo_beside
+from core.files.project.witness import Written, witnessed
 from core.files.reading import cannot_read, json_of, resolved
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import Table
@@ -112,14 +111,11 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
 
 
 def _rewritten(folder: Path, beside: Path, file: ProjectFile, packed: ProjectFile) -> dict[str, Path]:
-    """project.json of the project with its pictures within it, and the audit trail that tells of that."""
+    """project.json of the project with its pictures within it, and what witnesses of that write beside it."""
     text = project_text(packed, folder / PROJECT)
-    (beside / PROJECT).write_text(text, encoding="utf-8", newline="\n")
-    if (folder / AUDIT).exists():
-        shutil.copyfile(folder / AUDIT, beside / AUDIT)
-    state = hashlib.sha256(text.encode()).hexdigest()
-    append(beside, "saved", differences(file, packed), why="packed", state=state)
-    return {name: beside / name for name in (PROJECT, AUDIT)}
+    with witnessed(beside, Written("packed", file, packed, text, of=folder)):
+        (beside / PROJECT).write_text(text, encoding="utf-8", newline="\n")
+    return {path.name: path for path in sorted(beside.iterdir())}
 
 
 def _pack(files: Mapping[str, Path], to: Path, progress: Progress) -> Packed:

@@ -12,6 +12,7 @@ import numpy as np
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
+from core.files.project.witness import Written, witnessed
 from core.files.results.inspection_file import write_inspection
 from core.files.results.shown_file import read_shown, write_shown
 from core.files.step_graph import FILES
@@ -20,7 +21,6 @@ from core.inspect.features.measured import FeatureResult
 from core.inspect.profile import Profile
 from core.inspect.shown.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
-from core.pipeline.project.verify import noting_results
 from core.pipeline.steps.inspect_step import InspectedScan, inspect, open_scan
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -56,7 +56,7 @@ def measure_features(
     """
     inspection, scan = _inspected(folder, project, progress, memory)
     path, shown = results_folder(folder) / FILES["inspection"], _shown(inspection, scan)
-    with noting_results(folder):
+    with witnessed(folder, Written("measured")):
         write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))
         write_shown(path, shown)
     return shown

@@ -17,13 +17,13 @@ from core.files.project.data import Project
 from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
 from core.files.project.view_file import drop_view_of_another
+from core.files.project.witness import Written, witnessed
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.planes_file import planes_id
 from core.files.results.run_file import write_run
 from core.files.step_graph import FILES
 from core.inspect.results import GaugeResult
 from core.pipeline.compile_ahead import compile_ahead
-from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.camera_step import solved_for
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
@@ -74,7 +74,7 @@ def measure_scan(
     require_scan(recording_set)
     compile_ahead(progress)
     results = make_inner_folder(folder, RESULTS)
-    with noting_results(folder), alone_in(results), staged(results, "scan", _OF_A_SCAN) as new:
+    with witnessed(folder, Written("measured")), alone_in(results), staged(results, "scan", _OF_A_SCAN) as new:
         put_in_place(folder, project.accepted, new, has_fan=project.rig.has_fan)
         work = Workspace.open(recording_set, new, part_name(project), folder / FOLDER)
         record_calibrations(work, folder, project)
@@ -103,7 +103,7 @@ def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -
     InputError
         If there is no scan, or it has no two parallel faces there.
     """
-    with noting_results(folder):
+    with witnessed(folder, Written("measured")):
         return gauge_step(project_workspace(folder, project), progress)
 
 

@@ -5,20 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from core.files.project.audit import read_trail
 from core.files.project.data import Project
 from core.files.project.folder import results_folder, study_path
 from core.files.project.report_template import read_report_template
 from core.files.project.view_file import read_view
+from core.files.project.witness import Written, evidence_of, witnessed
 from core.files.recording.picture_reader import PictureReader
 from core.findings.table import note_of
-from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.brought_sections import with_studies
 from core.pipeline.steps.report_step import report_content, report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
-from core.report.content import AuditMark, RepeatLine, ReportContent
+from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.template import SECTIONS, ReportTemplate
 from core.second_process import SecondProcess
@@ -38,7 +37,7 @@ def make_report(
         If there is no scan among the results.
     """
     work = project_workspace(folder, project)
-    with noting_results(folder, reported=True):
+    with witnessed(folder, Written("reported")):
         return report_step(work, progress, lambda content: with_words(content, folder, project), beside)
 
 
@@ -89,7 +88,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         paper=choices.paper,
         language=choices.language or content.language,
         template=template,
-        audit=_audit_mark(folder),
+        evidence=evidence_of(folder),
         view=read_view(folder),
     )
 
@@ -101,9 +100,3 @@ def _with_kept_studies(content: ReportContent, folder: Path, project: Project) -
         note = note_of("plugin.studies_not_printed", names=[one.title for one in kept])
         return replace(content, notes=(*content.notes, note))
     return with_studies(content, [study_path(folder, one.id) for one in kept])
-
-
-def _audit_mark(folder: Path) -> AuditMark | None:
-    """The last entry of the audit trail; those of reports left out, so that the same report comes out again."""
-    entries = [entry for entry in read_trail(folder).entries if entry.what != "reported"]
-    return AuditMark(entries[-1].n, entries[-1].hash) if entries else None

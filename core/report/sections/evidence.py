@@ -209,7 +209,7 @@ def remarks(look: ReportLook, content: ReportContent) -> list[Flowable]:
 
 
 def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Make the section on software version and settings, with the hash over them and the audit trail's."""
+    """Make the section on software version and settings, with the hash over them and those that wings bring."""
     known = {look.words.known(name): look.words.known(value) for name, value in content.settings.items()}
     pairs = {look.words("Software"): f"Trisect {content.version}"} | known
     shown = list(pairs.items())[: limits.settings]
@@ -219,9 +219,8 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
     ]
     over_all = look.words("SHA-256 over version, method and settings: {hash}", hash=short_hash(content.settings_digest))
     body = [side_by_side(columns[0], columns[1], TEXT_WIDTH), look.text(over_all, "small")]
-    if content.audit is not None:
-        said = look.fixed_text("Audit trail of the project, SHA-256 of entry {n}:", "small", n=content.audit.n)
-        body += [said, Paragraph(markup(content.audit.sha256), look.style("mono"))]
+    for one in content.evidence:
+        body += [look.text(look.words(one.text), "small"), Paragraph(markup(one.sha256), look.style("mono"))]
     return [
         section(look, "settings", "Software and settings", body),
         *more_line(look, len(pairs) - limits.settings),

@@ -28,6 +28,7 @@ from core.files.project.folder import (
     write_autosave,
     write_project,
 )
+from core.files.project.witness import TRAIL
 from core.files.recording.rig import default_rig, read_rig, rig_to_toml
 
 RIG = rig_to_toml(default_rig())
@@ -38,7 +39,7 @@ def named(name):
 
 
 def names_in(folder):
-    return sorted(path.name for path in folder.iterdir())
+    return sorted({path.name for path in folder.iterdir()} - {TRAIL})
 
 
 def test_a_project_opens_by_its_folder_and_by_its_file(tmp_path):
@@ -96,7 +97,7 @@ def test_the_last_five_versions_are_kept_byte_by_byte(tmp_path):
     assert [read_project(path).project.info.name for path in kept] == [
         f"version {number}" for number in (6, 5, 4, 3, 2)
     ]
-    assert names_in(tmp_path) == sorted(["audit.jsonl", "backups", "project.json", f"{tmp_path.name}.trisect"])
+    assert names_in(tmp_path) == sorted(["backups", "project.json", f"{tmp_path.name}.trisect"])
 
 
 def test_versions_stay_in_order_beyond_any_number_of_digits_and_beside_other_files(tmp_path):
@@ -209,7 +210,7 @@ def test_autosaved_changes_can_be_recovered_until_they_are_saved(tmp_path):
     create_project(tmp_path, changed)
     assert recoverable(tmp_path) is None  # also when the program died before it could remove the autosaved state
     remove_autosave(tmp_path)
-    assert names_in(tmp_path) == sorted(["audit.jsonl", "backups", "project.json", f"{tmp_path.name}.trisect"])
+    assert names_in(tmp_path) == sorted(["backups", "project.json", f"{tmp_path.name}.trisect"])
     remove_autosave(tmp_path)
 
 

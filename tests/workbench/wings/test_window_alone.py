@@ -87,5 +87,6 @@ def test_a_name_of_no_wing_is_told_in_the_window(
     opened_by_entries(hand_bench, window)
     (notice,) = hand_bench.notices.all
     assert (
-        notice.text == "TRISECT_WITHOUT_WINGS names rig_planing, but the wings are geometry, rig_planning and studies."
+        notice.text
+        == "TRISECT_WITHOUT_WINGS names rig_planing, but the wings are audit, geometry, rig_planning and studies."
     )

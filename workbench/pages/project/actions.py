@@ -29,7 +29,6 @@ from core.simulate.sample import simulated_project
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
 from workbench.pages.live.settings import choose_own, choose_simulated
-from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copies import PACKED, ProjectCopies
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.sample import SampleProject
@@ -219,56 +218,6 @@ class ProjectActions(QObject):
     def begin_next_part(self) -> None:
         """Make the project of the next part of the series, and show its scan page."""
         self.copies.next_part(lambda: self.go_to.emit("scan"))
-
-    def show_audit_trail(self) -> None:
-        """Save the project, and show its audit trail: who did what and when."""
-        if self.model.folder is not None:
-            if not self.model.is_read_only:
-                self.save()
-            AuditWindow(self.bench, self.model.folder, self._window).exec()
-
-    def sign_in(self) -> None:
-        """Sign a person in by name and PIN, or sign out who is signed in; changes are saved before."""
-        names = [one.name for one in self.model.rules.people]
-        if not names:
-            text = tr(
-                "Nobody is named in this project, so everybody may do everything. The manual says how to name people."
-            )
-            self.bench.notices.info(text)
-            return
-        if not self.save():
-            return
-        if self.model.signed_in is not None:
-            self.model.sign_out()
-            self.bench.notices.info(tr("Signed out."))
-            return
-        self._sign_in()
-
-    def may_leave_operator_mode(self) -> bool:
-        """Ask for name and PIN of an inspector or administrator; True if given, or if no roles are set."""
-        if not self.model.rules.people:
-            return True
-        if not self._sign_in():
-            return False
-        person = self.model.signed_in
-        if person is None or person.role == "operator":
-            self.bench.notices.warning(tr("Only an inspector or administrator may leave operator mode."))
-            return False
-        return True
-
-    def _sign_in(self) -> bool:
-        """Ask for name and PIN; False if they are not given, or do not belong together."""
-        names = [one.name for one in self.model.rules.people]
-        given = ask.ask_name_and_pin(self._window, tr("Sign in"), names)
-        if given is None:
-            return False
-        try:
-            self.model.sign_in(*given)
-        except InputError as error:
-            self.bench.notices.failed(error)
-            return False
-        self.bench.notices.info(tr("{name} has signed in.", name=given[0]))
-        return True
 
     def save(self) -> bool:
         """Save the project, with fields still being edited; False if it could not be saved."""

@@ -126,7 +126,7 @@ class ProjectCopies(QObject):
         folder = self._folder(tr("Stop the recording first; then the next part can be begun."))
         if folder is None:
             return
-        info, person, notices = self._model.project.info, self._model.signed_in, self._bench.notices
+        info, person, notices = self._model.project.info, self._model.guard.signed_in, self._bench.notices
         answer = ask.ask_next_part(
             self._window,
             info.part or info.name,
@@ -145,7 +145,7 @@ class ProjectCopies(QObject):
             self._open(project, then=opened)
 
         def opened() -> None:
-            self._model.stay_signed_in(person)
+            self._model.guard.stay_signed_in(person)
             if drawn:
                 text = tr("Faces drawn in the picture are as for the last part: lay this one where that one lay.")
                 notices.warning(text)

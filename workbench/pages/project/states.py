@@ -13,6 +13,7 @@ from core.files.project.data import ProjectFile
 from core.files.project.folder import Version, read_project, recoverable, rescues
 from core.files.project.json_form import NewerProject
 from core.files.project.lock import lock_owner
+from core.files.project.witness import unwitnessed
 from core.messages import visible
 from workbench.language import named, time_of, tr
 from workbench.project_model import Access
@@ -31,7 +32,9 @@ class StateChoice:
 
 
 def choose_access(parent: QWidget, folder: Path) -> Access | None:
-    """Ask how to open a project if it is open elsewhere, else return ALONE; None if the user cancels."""
+    """Ask how to open a project if it is open elsewhere; None if they cancel. READ_ONLY where it has no witness."""
+    if unwitnessed(folder) is not None:
+        return Access.READ_ONLY
     holder = lock_owner(folder)
     if holder is None:
         return Access.ALONE

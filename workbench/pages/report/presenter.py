@@ -176,9 +176,8 @@ class ReportPresenter(StepPresenter):
             WhyNot.NOTHING: "",
             WhyNot.MAKING: tr("The report is being made."),
             WhyNot.NO_SCAN: self.blocker(),
-            WhyNot.READ_ONLY: tr(
-                "The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy)."
-            ),
+            WhyNot.READ_ONLY: self.bench.unwitnessed
+            or tr("The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy)."),
         }[why_not_make(self._facts())]
 
     def do_run(self) -> None:

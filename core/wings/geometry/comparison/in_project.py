@@ -8,9 +8,9 @@ import numpy as np
 
 from core.files.atomic import remove
 from core.files.project.folder import results_folder
+from core.files.project.witness import Written, witnessed
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.step_graph import FILES
-from core.pipeline.project.verify import noting_results
 from core.progress import Progress, silent
 from core.wings.geometry.comparison.compare import ComparisonScales
 from core.wings.geometry.comparison.compare_step import Compared, compare_step
@@ -23,12 +23,12 @@ MOST_DRAWN = 200_000
 def compare_project(
     folder: Path, other: Path, align: str, scales: ComparisonScales, progress: Progress = silent
 ) -> tuple[Compared, dict[str, Path]]:
-    """Compare a project's scan with the surface in `other`, write the result, and note it in the audit trail.
+    """Compare a project's scan with the surface in `other`, and write the result among its results.
 
     As `core.wings.geometry.comparison.compare_step.compare_step`.
     """
     folder = folder if folder.is_dir() else folder.parent
-    with noting_results(folder):
+    with witnessed(folder, Written("measured")):
         return compare_step(folder, other, align, scales, progress=progress)
 
 
@@ -77,6 +77,6 @@ def forget_comparison(folder: Path, progress: Progress = silent) -> None:
         If a file cannot be removed.
     """
     progress("results", 0, 1)
-    with noting_results(folder):
+    with witnessed(folder, Written("measured")):
         for name in ("comparison", "compared", "comparison_table"):
             remove(results_folder(folder) / FILES[name])

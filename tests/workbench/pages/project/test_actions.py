@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,22 +10,19 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QLineEdit, QPushButton, QWidget
+from PySide6.QtWidgets import QLineEdit, QWidget
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project, recoverable, write_autosave
 from core.files.project.keys import finished
 from core.files.project.lock import take_lock
-from core.files.project.people import Rules, person, write_rules
 from core.files.recording.unfinished import note_recording
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.live.settings import LiveSettings
 from workbench.pages.project.actions import ProjectActions
-from workbench.pages.project.audit import AuditWindow
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -657,69 +653,3 @@ def test_pictures_of_an_interrupted_recording_are_used_or_told_where_they_are(
     assert bool(projects.model.project.sources.scan) is used
     told = [notice.text for notice in projects.bench.notices.all]
     assert told == ([] if used else [f"The pictures are in {recorded}."])
-
-
-def test_the_audit_trail_is_shown_remarked_on_and_exported(
-    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = project(tmp_path / "block")
-    projects.open_project(folder)
-    renamed(projects, "Other")
-    projects.save()
-    window = AuditWindow(projects.bench, folder)
-    assert [button.text() for button in window.findChildren(QPushButton) if button.isDefault()] == ["Close"]
-    assert 'info.name: "Block" → "Other"' in window.entries.toPlainText()
-    window.add_remark("as the customer wished")
-    assert window.entries.toPlainText().index("as the customer wished") < window.entries.toPlainText().index("Other")
-    assert read_trail(folder).head in window.state.text()
-    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "trail.csv")
-    window.export.click()
-    assert "as the customer wished" in (tmp_path / "trail.csv").read_text()
-    audit = folder / "audit.jsonl"
-    audit.write_text(audit.read_text().replace("Other", "Another"))
-    assert "was changed" in AuditWindow(projects.bench, folder).state.text()
-
-
-def test_all_files_are_checked_from_the_audit_trail_and_what_differs_is_named(
-    projects: ProjectActions, tmp_path: Path, qtbot: Any, finished_project_folder: Path
-) -> None:
-    folder = Path(shutil.copytree(finished_project_folder, tmp_path / "block"))
-    projects.open_project(folder)
-    window = AuditWindow(projects.bench, folder)
-    assert window.found.isHidden()
-    window.verify.click()
-    assert not window.verify.isEnabled() and "being compared" in window.found.text()
-    qtbot.waitUntil(window.verify.isEnabled, timeout=30_000)
-    assert "All files are what they were" in window.found.text()
-    (folder / "results" / "gauge.json").write_text("{}")
-    next((folder / "recordings" / "scan").glob("*.png")).unlink()
-    window.verify.click()
-    qtbot.waitUntil(window.verify.isEnabled, timeout=30_000)
-    said = window.found.text()
-    assert "results/gauge.json is not what it was" in said and "is missing" in said and "All files" not in said
-
-
-def test_somebody_signs_in_changes_limits_signs_and_signs_out(
-    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = project(tmp_path / "block")
-    projects.open_project(folder)
-    projects.sign_in()
-    assert "everybody may do everything" in projects.bench.notices.all[-1].text
-    assert not AuditWindow(projects.bench, folder).sign.isEnabled()
-    write_rules(folder, Rules((person("Anna", "administrator", "anna-1"),)))
-    projects.close_project()
-    projects.open_project(folder)
-    given = [("Anna", "wrong"), ("Anna", "anna-1"), ("Anna", "anna-1")]
-    monkeypatch.setattr(ask, "ask_name_and_pin", lambda parent, title, names: given.pop(0))
-    monkeypatch.setattr(ask, "ask_line", lambda *_: "released")
-    projects.sign_in()
-    assert "do not belong together" in projects.bench.notices.all[-1].text
-    projects.sign_in()
-    assert projects.bench.notices.all[-1].text == "Anna has signed in."
-    window = AuditWindow(projects.bench, folder)
-    window.sign.click()
-    assert "Anna (administrator)" in window.entries.toPlainText()
-    assert [(one.what, one.by, one.why) for one in read_trail(folder).entries][-1] == ("signed", "Anna", "released")
-    projects.sign_in()
-    assert projects.model.signed_in is None

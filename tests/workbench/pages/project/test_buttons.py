@@ -16,19 +16,19 @@ class Facts(NamedTuple):
     live: bool
     left: frozenset[str]
     scan_chosen: bool
-    read_only: bool
+    cannot_write: str
 
 
-STATES = [Facts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
+STATES = [Facts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, ("", "It is read-only."))]
 
 
 @pytest.mark.parametrize("facts", STATES)
 def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: Facts) -> None:
     why = why_not_measure_all(**facts._asdict())
     idle = not facts.running and not facts.live
-    possible = bool(facts.left) and not facts.read_only and (facts.scan_chosen or "scan" not in facts.left)
+    possible = bool(facts.left) and not facts.cannot_write and (facts.scan_chosen or "scan" not in facts.left)
     assert bool(why) != (idle and possible)
     if idle and not facts.left:
         assert why == "Everything is done.", "nothing else is told where nothing is left"
-    if idle and facts.left and facts.read_only:
-        assert "read-only" in why, "pictures need not be chosen for what cannot be written"
+    if idle and facts.left and facts.cannot_write:
+        assert why == "It is read-only.", "pictures need not be chosen for what cannot be written"

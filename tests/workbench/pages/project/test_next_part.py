@@ -13,7 +13,6 @@ from PySide6.QtWidgets import QDialogButtonBox, QWidget
 
 from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import create_project, read_project
-from core.files.project.people import Rules, person, write_rules
 from core.inspect.plan.feature_spec import FaceAt, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
@@ -68,20 +67,6 @@ def test_it_is_opened_at_its_scan_and_what_was_typed_last_is_saved_before(
     assert (projects.model.project.info.serial, projects.model.project.info.laboratory) == ("2", "Lab")
     assert read_project(tmp_path / "Block 1").project.info.laboratory == "Lab"
     assert projects.bench.notices.all == []
-
-
-def test_whoever_has_signed_in_stays_so(
-    projects: ProjectActions, asked: list[tuple[str, str]], qtbot: Any, tmp_path: Path
-) -> None:
-    first_part(tmp_path / "Block 1")
-    people = (person("Ada", "administrator", "1234"), person("Bo", "operator", "5678"))
-    write_rules(tmp_path / "Block 1", Rules(people))
-    projects.open_project(tmp_path / "Block 1")
-    projects.model.sign_in("Bo", "5678")
-    with qtbot.waitSignal(projects.go_to):
-        projects.begin_next_part()
-    assert asked == [("Block", "Bo")]
-    assert projects.model.signed_in == people[1] and projects.model.rules.people == people
 
 
 def test_faces_drawn_in_the_picture_are_told(

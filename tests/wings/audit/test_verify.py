@@ -10,12 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from core.files.project.audit import AUDIT, read_trail
 from core.files.project.data import ProjectFile, Sources, new_project
 from core.files.project.folder import create_project, read_project, write_project
+from core.files.project.witness import TRAIL
 from core.files.recording.recording_set import RIG
-from core.pipeline.project.verify import CHANGING, note_results, noting_results, verify
 from core.pipeline.project.workspace import project_set
+from core.wings.audit.trail import read_trail
+from core.wings.audit.verify import verify
+from core.wings.audit.witness import CHANGING, note_results, noting_results
 from tests.simulated import trisect
 
 
@@ -75,7 +77,7 @@ def test_results_that_are_gone_or_came_from_elsewhere_are_named(project: Path) -
 
 def test_a_report_of_another_project_and_a_changed_trail_are_told(project: Path) -> None:
     assert [problem.code for problem in verify(project, head="abc123" * 10).problems] == ["verify.head_unknown"]
-    path = project / AUDIT
+    path = project / TRAIL
     path.write_text(path.read_text().replace("Block", "Blick", 1))
     assert "entry 1 was changed" in trisect("verify", project).out
 
@@ -92,7 +94,7 @@ def test_a_save_that_was_cut_off_is_a_note(project: Path) -> None:
 def test_a_program_that_ends_between_its_results_and_their_entry_has_not_changed_good_ones(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("core.pipeline.project.verify.append", _killed)
+    monkeypatch.setattr("core.wings.audit.witness.append", _killed)
     with pytest.raises(KeyboardInterrupt), noting_results(project):
         (project / "results" / "cloud.ply").write_bytes(b"a better cloud")
     monkeypatch.undo()

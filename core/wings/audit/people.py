@@ -21,11 +21,12 @@ from core.errors import InputError
 from core.files.atomic import remove, write_text
 from core.files.complaints import checked_json
 from core.files.json_text import to_json
-from core.files.project.audit import Entry, append
 from core.files.project.changes import Change
 from core.files.project.data import Done, Project
+from core.files.project.witness import Signed
 from core.files.reading import read_json
 from core.messages import Message, label
+from core.wings.audit.trail import Entry, append
 
 PEOPLE = "people.json"
 Role = Literal["operator", "inspector", "administrator"]
@@ -90,7 +91,7 @@ def with_pin(rules: Rules, name: str, pin: str) -> Person:
     return found
 
 
-def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
+def write_rules(folder: Path, rules: Rules, by: Signed | None = None) -> None:
     """Write a project's people and rules, and into the audit trail their change; InputError if `by` may not.
 
     Raises
@@ -145,12 +146,12 @@ def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
     return append(folder, "signed", why=meaning.strip(), by=with_pin(read_rules(folder), name, pin))
 
 
-def refused(rules: Rules, by: Person | None, before: Project, after: Project) -> InputError | None:
+def refused(rules: Rules, by: Signed | None, before: Project, after: Project) -> InputError | None:
     """Make the error that a person's role does not permit a change of the project; None if it does.
 
     Who has not signed in (`by` is None) is an operator.
     """
-    role: Role = "operator" if by is None else by.role
+    role = "operator" if by is None else by.role
     needed = needed_role(before, after)
     if not rules.people or ROLES.index(role) >= ROLES.index(needed):
         return None

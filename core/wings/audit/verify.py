@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import remove, write_bytes
-from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, inputs_of
-from core.files.project.people import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
@@ -21,11 +17,9 @@ from core.messages import Message, plural_message
 from core.pipeline.project.workspace import project_set
 from core.progress import Progress, silent, steps
 from core.states import changed_since
-
-_MAKING = ("measured", "reported")
-"""Entries that tell of results."""
-CHANGING = ".results-changing"
-"""Stands in a project's folder from before its results change until their entry is written."""
+from core.wings.audit.people import PEOPLE
+from core.wings.audit.trail import Entry, Trail, read_trail
+from core.wings.audit.witness import CHANGING, names_of_results, told_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,44 +31,6 @@ class Verified:
     inputs: int
     problems: tuple[Message, ...]
     notes: tuple[Message, ...]
-
-
-@contextmanager
-def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
-    """Write an entry on the project's results into its audit trail when this block has made or changed them.
-
-    A block that fails has its entry where it changed something all the same. Should the program end before the entry
-    is written, a mark beside the results says so: `verify` then does not call good results changed.
-
-    Raises
-    ------
-    InputError
-        If the folder is gone, or cannot be written to.
-    """
-    mark = folder / CHANGING
-    write_bytes(mark)
-    try:
-        yield
-    except BaseException:
-        told = _told_of(read_trail(folder).entries)
-        if _hashes(folder) != (dict(told.files) if told else {}):
-            note_results(folder)
-        remove(mark)
-        raise
-    note_results(folder, reported=reported)
-    remove(mark)
-
-
-def note_results(folder: Path, *, reported: bool = False) -> None:
-    """Write an entry with the hashes of the project's results as they are into its audit trail.
-
-    Raises as `append`.
-    """
-    append(folder, "reported" if reported else "measured", files=_hashes(folder))
-
-
-def _hashes(folder: Path) -> dict[str, str]:
-    return {name: file_hash(folder / name) for name in _names(folder)}
 
 
 def verify(folder: Path, set_folder: Path | None = None, head: str = "", progress: Progress = silent) -> Verified:
@@ -125,7 +81,7 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
             )
         else:
             problems.append(Message("verify.state", "{file} is not what the program last saved", file=PROJECT))
-    told = _told_of(trail.entries)
+    told = told_of(trail.entries)
     differing = _results(folder, told) if told else []
     if differing and (folder / CHANGING).exists():
         notes.append(
@@ -161,11 +117,6 @@ def _people(folder: Path, trail: Trail) -> Message | None:
     return Message("verify.people", "{file} is not what the audit trail tells of", file=PEOPLE)
 
 
-def _told_of(entries: Sequence[Entry]) -> Entry | None:
-    """The last entry that tells of results."""
-    return next((entry for entry in reversed(entries) if entry.what in _MAKING and entry.files), None)
-
-
 def _results(folder: Path, entry: Entry) -> list[Message]:
     problems = []
     for one, digest in entry.files.items():
@@ -174,17 +125,11 @@ def _results(folder: Path, entry: Entry) -> list[Message]:
             problems.append(Message("verify.missing", "{name} is missing", name=one))
         elif file_hash(path) != digest:
             problems.append(Message("verify.result", "{name} is not what it was (entry {n})", name=one, n=entry.n))
-    strange = (one for one in _names(folder) if Path(one).name in FILES.values() and one not in entry.files)
+    strange = (one for one in names_of_results(folder) if Path(one).name in FILES.values() and one not in entry.files)
     problems += [
         Message("verify.not_made", "{name} was not made with the results beside it", name=one) for one in strange
     ]
     return problems
-
-
-def _names(folder: Path) -> list[str]:
-    results = folder / RESULTS
-    found = sorted(results.iterdir()) if results.is_dir() else []
-    return [f"{RESULTS}/{path.name}" for path in found if path.is_file() and path.name[0] != "."]
 
 
 def _inputs(inputs: Iterable[tuple[str, str]], recording_set: RecordingSet, progress: Progress) -> list[Message]:

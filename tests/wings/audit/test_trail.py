@@ -14,10 +14,11 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from core.files.project.audit import AUDIT, START, append, read_trail, trail_table
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, write_project
 from core.files.project.lock import user_name
+from core.files.project.witness import TRAIL
+from core.wings.audit.trail import START, append, read_trail, trail_table
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def changed(lines: list[str]) -> list[str]:
 
 def forged(lines: list[str]) -> list[str]:
     """Changed, and its own hash made right again."""
-    from core.files.project.audit import _hash
+    from core.wings.audit.trail import _hash
 
     entry = json.loads(changed(lines)[1])
     entry.pop("hash")
@@ -81,7 +82,7 @@ def forged(lines: list[str]) -> list[str]:
 def test_what_was_changed_left_out_or_put_in_between_is_told(
     project: Path, change: Callable[[list[str]], list[str]], said: str
 ) -> None:
-    path = project / AUDIT
+    path = project / TRAIL
     path.write_text("\n".join(change(path.read_text().splitlines())) + "\n")
     problems = [str(problem) for problem in read_trail(project).problems]
     assert problems[0].startswith(said)
@@ -91,7 +92,7 @@ def test_what_was_changed_left_out_or_put_in_between_is_told(
 
 @pytest.mark.parametrize("left", [1, 40, 200])
 def test_a_line_that_a_crash_cut_off_is_told_and_goes_with_the_next_entry(project: Path, left: int) -> None:
-    path = project / AUDIT
+    path = project / TRAIL
     whole = path.read_bytes()
     path.write_bytes(whole + whole.splitlines()[1][:left])
     trail = read_trail(project)
@@ -105,7 +106,7 @@ def test_a_line_that_a_crash_cut_off_is_told_and_goes_with_the_next_entry(projec
 
 def test_two_programs_append_one_after_the_other(project: Path) -> None:
     code = (
-        "from pathlib import Path; from core.files.project.audit import append\n"
+        "from pathlib import Path; from core.wings.audit.trail import append\n"
         f"for _ in range(20): append(Path({str(project)!r}), 'remark', why='x')"
     )
     both = [subprocess.Popen([sys.executable, "-c", code], env=os.environ) for _ in range(2)]

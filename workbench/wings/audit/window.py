@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,25 +10,31 @@ from PySide6.QtWidgets import QDialog, QInputDialog, QPlainTextEdit, QPushButton
 
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.project.audit import WHAT_NAMES, Entry, Trail, append, read_trail, trail_table
-from core.files.project.people import ROLE_NAMES, sign
 from core.messages import visible
+from core.wings.audit.people import ROLE_NAMES, sign
+from core.wings.audit.trail import WHAT_NAMES, Entry, Trail, append, read_trail, trail_table
 from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen, set_text
-from workbench.work import jobs
+from workbench.wings.audit import jobs
+from workbench.wings.audit.people import names_of_people
 
 if TYPE_CHECKING:
-    from core.pipeline.project.verify import Verified
+    from core.wings.audit.verify import Verified
+    from workbench.main_window import MainWindow
 
 
-def ask_reason(parent: QWidget | None, label: str) -> str:
-    """Ask for the reason of changing limits after something was judged; "" if the user cancels the change."""
-    text = tr(
-        "Something was judged by these limits already. Why are they changed ({what})? It stays for good.", what=label
-    )
-    return ask.ask_line(parent, tr("Reason"), text)
+def trail_of(bench: Bench, window: MainWindow) -> Callable[[], object]:
+    """Make the function that saves the project and shows its audit trail, to be called by the menu entry."""
+
+    def show() -> None:
+        if bench.model.folder is not None:
+            if not bench.model.is_read_only:
+                window.projects.save()
+            AuditWindow(bench, bench.model.folder, window).exec()
+
+    return show
 
 
 class AuditWindow(QDialog):
@@ -48,7 +55,7 @@ class AuditWindow(QDialog):
         self.sign = QPushButton(tr("Sign …"))
         self.sign.clicked.connect(self._ask_for_signature)
         fixed = tr("This project is read-only.") if bench.model.is_read_only else ""
-        unnamed = "" if bench.model.rules.people else tr("Nobody is named in this project, so nobody can sign.")
+        unnamed = "" if names_of_people(bench) else tr("Nobody is named in this project, so nobody can sign.")
         enable(self.remark, fixed, tr("Say why something was done; it stays for good."))
         enable(self.sign, fixed or unnamed, tr("Sign the project as it is, by name and PIN."))
         self.verify = QPushButton(tr("Check all files"))
@@ -106,8 +113,7 @@ class AuditWindow(QDialog):
         self.found.setText("\n".join(map(text_of, said)))
 
     def _ask_for_signature(self) -> None:
-        names = [one.name for one in self._bench.model.rules.people]
-        given = ask.ask_name_and_pin(self, tr("Sign"), names)
+        given = ask.ask_name_and_pin(self, tr("Sign"), names_of_people(self._bench))
         meaning = "" if given is None else ask.ask_line(self, tr("Sign"), tr("What the signature means:"))
         if given is not None and meaning:
             try:

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from core.files.project.audit import read_trail
 from core.files.project.data import Done, Project, ProjectFile, new_project
 from core.files.project.folder import create_project
-from core.files.project.people import (
+from core.files.recording.rig import GaugeSpec
+from core.inspect.conformity import Limits
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.wings.audit.people import (
     PEOPLE,
     Rules,
     needed_role,
@@ -25,10 +27,8 @@ from core.files.project.people import (
     with_pin,
     write_rules,
 )
-from core.files.recording.rig import GaugeSpec
-from core.inspect.conformity import Limits
-from core.inspect.plan.feature_spec import FeatureSpec
-from core.pipeline.project.verify import verify
+from core.wings.audit.trail import read_trail
+from core.wings.audit.verify import verify
 
 ANNA, OLE, EVE = (
     person("Anna", "administrator", "anna-1"),

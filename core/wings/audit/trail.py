@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Literal, Protocol
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -28,11 +28,11 @@ from core.files.folder_lock import wait_for
 from core.files.limits import DATA_BYTES
 from core.files.project.changes import Change
 from core.files.project.lock import user_name
+from core.files.project.witness import TRAIL, Signed
 from core.files.reading import json_of, read_bytes
 from core.files.tables import TIME_WORDS, Time
 from core.messages import Message, label
 
-AUDIT = "audit.jsonl"
 START = "0" * 64
 """What the first entry says of the one before."""
 
@@ -52,15 +52,6 @@ WHAT_NAMES: Mapping[What, str] = {
 """What was done, in words."""
 
 _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digits")]
-
-
-class Signed(Protocol):
-    """Person who has signed in, with name and role."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def role(self) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +77,7 @@ class Entry:
     state
         SHA-256 in hex of project.json as it was saved; nothing where it was not.
     by, role
-        Who had signed in, by `core.files.project.people`; nothing where nobody had.
+        Who had signed in, by `core.wings.audit.people`; nothing where nobody had.
     """
 
     n: Annotated[int, Field(ge=1, description="a whole number from 1")]
@@ -143,7 +134,7 @@ def append(
     """
     if not folder.is_dir():
         raise vanished(folder)
-    path = folder / AUDIT
+    path = folder / TRAIL
     try:
         with _held(path) as handle:
             kept = _whole_lines(handle)
@@ -172,7 +163,7 @@ def append(
 
 def read_trail(folder: Path) -> Trail:
     """Read the audit trail of a project, checked link by link; InputError if its file cannot be read at all."""
-    path = folder / AUDIT
+    path = folder / TRAIL
     if not path.exists():
         return Trail()
     *lines, rest = read_bytes(path, most=DATA_BYTES).split(b"\n")

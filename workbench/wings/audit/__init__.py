@@ -1,0 +1,1 @@
+"""The audit trail of the open project, and who has signed in."""
