@@ -104,6 +104,10 @@ class Wing:
     reads_study: str = ""
     witness: str = ""
 
+    def section_name(self, section: ReportSection) -> str:
+        """Return the name by which a section of this wing is left out of the report."""
+        return section.below_results or self.name
+
 
 class Named(Protocol):
     """Object with the name of a wing."""

@@ -33,7 +33,7 @@ from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_planes import planes_facts
 from core.report.facts.of_scan import plane_check_facts, plane_tables, scan_facts, sigma_of
 from core.report.facts.table import FactTable
-from core.report.template import SECTIONS, Paper, ReportTemplate
+from core.report.template import SECTIONS, Paper, ReportTemplate, sections
 from core.report.wording import ENGLISH, Words, result_name
 from core.scan.known_planes.points_on_planes import PlaneAgreement
 from core.scan.plane_check import PlaneCheck
@@ -180,11 +180,14 @@ class BroughtSection:
         What it tells.
     origin
         The package it comes from; None: the program itself.
+    name
+        By which it is left out.
     """
 
     title: str
     facts: tuple[Fact, ...]
     origin: Origin | None = None
+    name: str = ""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -298,7 +301,7 @@ class ReportContent:
     repeats
         Scans of the same part to be compared, in the order of measuring; this one may be among them.
     hidden
-        Names out of SECTIONS that are left out; the last page says so.
+        Names out of `core.report.template.sections` that are left out; the last page says so.
     paper, language
         What the report is printed on, and the language of its fixed words.
     template
@@ -313,7 +316,7 @@ class ReportContent:
     Raises
     ------
     ValueError
-        If `hidden` has a name that is not in SECTIONS.
+        If `hidden` has a name of no section.
     """
 
     rig: Mapping[str, str]
@@ -371,7 +374,7 @@ class ReportContent:
     certificates: Mapping[str, Certificate] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if unknown := self.hidden - SECTIONS.keys():
+        if unknown := self.hidden - sections().keys():
             raise ValueError(f"{', '.join(sorted(unknown))}: no section of that name can be left out")
 
     @property
@@ -491,7 +494,8 @@ class ReportContent:
         headings["maps"] = label(
             "Residuals of both faces" if self.gauge else "Depth and its uncertainty over the picture"
         )
-        return {name: heading for name, heading in headings.items() if not missing.get(name, False)}
+        brought = {one.name: one.title for one in (*self.below_results.values(), *self.brought)}
+        return {name: heading for name, heading in headings.items() if not missing.get(name, False)} | brought
 
     @property
     def facts(self) -> Mapping[str, tuple[Fact, ...]]:

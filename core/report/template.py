@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 
 from core.messages import label
 from core.translations import languages
+from core.wing import wings
 
 Paper: TypeAlias = Literal["A4", "Letter"]
 """What a report is printed on."""
@@ -45,8 +46,14 @@ SECTIONS: Mapping[str, str] = MappingProxyType(
 """Name and title of each section that can be left out, in printing order.
 
 What a reader must not miss is not among them: the result, what it does not cover, warnings, and the hash over all
-inputs.
+inputs. Those of wings are not among them either: see `sections`.
 """
+
+
+def sections() -> Mapping[str, str]:
+    """List name and title of each section that can be left out, those that wings bring behind those of the house."""
+    brought = {wing.section_name(one): one.title for wing in wings() for one in wing.sections}
+    return {**SECTIONS, **{name: title for name, title in brought.items() if name not in SECTIONS}}
 
 
 @dataclass(frozen=True, slots=True)

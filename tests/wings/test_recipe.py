@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import pytest
 from pypdf import PdfReader
@@ -52,6 +53,8 @@ def test_feature_command_and_section_are_there_and_gone_without_the_wing(inspect
     pages = printed(content)
     assert "From the package lab-wear 1.2, which is no part of Trisect." in pages
     assert "\nWear\n" in pages
+    pages = printed(replace(content, hidden=frozenset({"wear"})))
+    assert "\nWear\n" not in pages and "Left out of this report by choice: Wear." in pages
 
     monkeypatch.setenv(WITHOUT, "wear")
     look_again()

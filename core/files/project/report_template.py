@@ -32,7 +32,7 @@ from core.files.picture_size import declared_sizes
 from core.files.reading import read_bytes, read_toml, resolved
 from core.files.recording.rig import Table
 from core.messages import Message
-from core.report.template import LANGUAGES, PAPERS, SECTIONS, Paper, ReportTemplate
+from core.report.template import LANGUAGES, PAPERS, Paper, ReportTemplate, sections
 
 _LARGEST_LOGO = 4_000_000
 """Bytes of a logo: it is in every report."""
@@ -98,11 +98,11 @@ def logo_beside(path: Path) -> Path | None:
 def section_set(names: list[str], *, where: str) -> frozenset[str]:
     """Return the `names` of a report's sections as a set; InputError, naming `where`, if there is no such section."""
     for name in names:
-        if name not in SECTIONS:
+        if name not in sections():
             raise InputError(
                 Message("project.no_such_section", 'there is no section "{name}" to leave out', name=name),
                 where=where,
-                todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(SECTIONS)),
+                todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(sections())),
             )
     return frozenset(names)
 

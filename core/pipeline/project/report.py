@@ -19,7 +19,7 @@ from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
-from core.report.template import SECTIONS, ReportTemplate
+from core.report.template import ReportTemplate, sections
 from core.second_process import SecondProcess
 from core.wing import studies_can_be_read
 
@@ -84,7 +84,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
             )
             for one in project.repeats
         ),
-        hidden=choices.hidden & SECTIONS.keys(),
+        hidden=choices.hidden & sections().keys(),
         paper=choices.paper,
         language=choices.language or content.language,
         template=template,

@@ -33,7 +33,7 @@ def with_brought_sections(content: ReportContent, out: Path) -> ReportContent:
             except Exception as error:  # noqa: BLE001  (whatever a stranger's wing raises: the report is made)
                 notes.append(failure(origin or OURS, one.title, error))
                 continue
-            section = BroughtSection(one.title, facts, origin)
+            section = BroughtSection(one.title, facts, origin, wing.section_name(one))
             if facts and one.below_results:
                 below.setdefault(one.below_results, section)
             elif facts:

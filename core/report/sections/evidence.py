@@ -43,6 +43,8 @@ def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """Make the report sections that wings bring; one from another package names that package."""
     parts: list[Flowable] = []
     for number, one in enumerate(content.brought):
+        if one.name in content.hidden:
+            continue
         parts += [section(look, f"brought-{number}", one.title, _brought(look, one))]
     return parts
 
@@ -50,7 +52,7 @@ def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
 def below_results(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """Make what wings put below the results on the first page; what is from another package names that package."""
     parts: list[Flowable] = []
-    for one in content.below_results.values():
+    for one in (one for one in content.below_results.values() if one.name not in content.hidden):
         parts += [Spacer(0, 3 * mm), look.fixed_text(one.title, "label"), *_brought(look, one)]
     return parts
 

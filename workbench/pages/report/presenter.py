@@ -12,7 +12,7 @@ from core.files.project.keys import finished, up_to_date
 from core.files.project.view_file import read_view
 from core.files.results.export_list import exports
 from core.messages import capital
-from core.report.template import SECTIONS
+from core.report.template import sections
 from core.wing import no_reader_of_studies, studies_can_be_read
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
@@ -53,7 +53,7 @@ class ReportPresenter(StepPresenter):
 
     def sections(self) -> list[tuple[str, str, bool]]:
         """List each section of the report that may be left out: name, title, and whether it is printed."""
-        return [(name, tr(title), name not in self.project.report.hidden) for name, title in SECTIONS.items()]
+        return [(name, tr(title), name not in self.project.report.hidden) for name, title in sections().items()]
 
     def empty_section(self, name: str) -> str:
         """Return the reason why a section has nothing to print yet; "" if it has."""
@@ -82,7 +82,7 @@ class ReportPresenter(StepPresenter):
     def choose_section(self, name: str, shown: bool) -> None:
         """Print a section of the report, or leave it out; undoable."""
         hidden = self.project.report.hidden - {name} if shown else self.project.report.hidden | {name}
-        title = SECTIONS[name]
+        title = sections()[name]
         label = tr("put in “{title}”", title=title) if shown else tr("leave out “{title}”", title=title)
         report = replace(self.project.report, hidden=frozenset(hidden))
         self.model.edit(label, replace(self.project, report=report))
