@@ -5,6 +5,8 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
+from workbench.reasons import first, why
+
 
 class Stage(StrEnum):
     """Stage of a calibration."""
@@ -142,7 +144,7 @@ def disabled_reasons(facts: Facts) -> Buttons:
     """Derive why the buttons run, accept and reject are disabled; "" for each that is enabled."""
     if not facts.needed:
         return Buttons(*[WhyNot.NOT_NEEDED] * len(Buttons._fields))
-    return Buttons(_run(facts), _accept(facts), _reject(facts))
+    return Buttons(*map(WhyNot, (_run(facts), _accept(facts), _reject(facts))))
 
 
 def why_not_restore(facts: RestoreFacts) -> WhyNotRestore:
@@ -150,45 +152,41 @@ def why_not_restore(facts: RestoreFacts) -> WhyNotRestore:
 
     Reasons in the choice come first, as waiting does not help there.
     """
-    reasons = (
-        (not facts.kept, WhyNotRestore.NONE_KEPT),
-        (not facts.chosen, WhyNotRestore.NONE_CHOSEN),
-        (facts.in_use, WhyNotRestore.IN_USE),
-        (facts.other_camera, WhyNotRestore.OTHER_CAMERA),
-        (facts.live, WhyNotRestore.LIVE),
-        (facts.keeping, WhyNotRestore.KEEPING),
-        (facts.job, WhyNotRestore.JOB),
+    reason = first(
+        why(not facts.kept, WhyNotRestore.NONE_KEPT),
+        why(not facts.chosen, WhyNotRestore.NONE_CHOSEN),
+        why(facts.in_use, WhyNotRestore.IN_USE),
+        why(facts.other_camera, WhyNotRestore.OTHER_CAMERA),
+        why(facts.live, WhyNotRestore.LIVE),
+        why(facts.keeping, WhyNotRestore.KEEPING),
+        why(facts.job, WhyNotRestore.JOB),
     )
-    return next((why for true, why in reasons if true), WhyNotRestore.NOTHING)
+    return WhyNotRestore(reason)
 
 
-def _run(facts: Facts) -> WhyNot:
-    if facts.live:
-        return WhyNot.LIVE
-    if facts.read_only:
-        return WhyNot.READ_ONLY
-    if facts.camera_missing:
-        return WhyNot.NO_CAMERA
-    if not facts.source:
-        return WhyNot.NO_SOURCE
-    if facts.searching:
-        return WhyNot.SEARCHING
-    return WhyNot.SOLVING if facts.solving else WhyNot.NOTHING
+def _run(facts: Facts) -> str:
+    return first(
+        why(facts.live, WhyNot.LIVE),
+        why(facts.read_only, WhyNot.READ_ONLY),
+        why(facts.camera_missing, WhyNot.NO_CAMERA),
+        why(not facts.source, WhyNot.NO_SOURCE),
+        why(facts.searching, WhyNot.SEARCHING),
+        why(facts.solving, WhyNot.SOLVING),
+    )
 
 
-def _accept(facts: Facts) -> WhyNot:
-    if facts.live:
-        return WhyNot.LIVE
-    if facts.read_only:
-        return WhyNot.READ_ONLY
-    if not facts.calibration or facts.solving or facts.keeping:
-        return WhyNot.NO_CALIBRATION
-    return WhyNot.ACCEPTED if facts.candidate == facts.accepted and facts.current else WhyNot.NOTHING
+def _accept(facts: Facts) -> str:
+    return first(
+        why(facts.live, WhyNot.LIVE),
+        why(facts.read_only, WhyNot.READ_ONLY),
+        why(not facts.calibration or facts.solving or facts.keeping, WhyNot.NO_CALIBRATION),
+        why(facts.candidate == facts.accepted and facts.current, WhyNot.ACCEPTED),
+    )
 
 
-def _reject(facts: Facts) -> WhyNot:
-    if facts.live:
-        return WhyNot.LIVE
-    if not facts.candidate or facts.solving:
-        return WhyNot.NO_CALIBRATION
-    return WhyNot.REJECTED if facts.rejected and facts.candidate != facts.accepted else WhyNot.NOTHING
+def _reject(facts: Facts) -> str:
+    return first(
+        why(facts.live, WhyNot.LIVE),
+        why(not facts.candidate or facts.solving, WhyNot.NO_CALIBRATION),
+        why(facts.rejected and facts.candidate != facts.accepted, WhyNot.REJECTED),
+    )

@@ -10,6 +10,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from workbench.language import tr
+from workbench.reasons import first, why
 
 
 class Stage(StrEnum):
@@ -78,15 +79,14 @@ def stage_of(facts: Facts) -> Stage:
 
 def why_not_measure(facts: Facts) -> WhyNot:
     """Return the reason why the thickness cannot be measured; `WhyNot` "" if it can."""
-    if not facts.scan:
-        return WhyNot.NO_SCAN
-    if facts.unreadable:
-        return WhyNot.UNREADABLE
-    if facts.read_only:
-        return WhyNot.READ_ONLY
-    if facts.measuring:
-        return WhyNot.MEASURING
-    return WhyNot.FACE_MISSING if facts.face_missing else WhyNot.NOTHING
+    reason = first(
+        why(not facts.scan, WhyNot.NO_SCAN),
+        why(facts.unreadable, WhyNot.UNREADABLE),
+        why(facts.read_only, WhyNot.READ_ONLY),
+        why(facts.measuring, WhyNot.MEASURING),
+        why(facts.face_missing, WhyNot.FACE_MISSING),
+    )
+    return WhyNot(reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,8 +118,8 @@ def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
     if facts.shown:
         return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."), "")
     none = tr("The scan cannot be read.") if facts.unreadable else "" if facts.scan else tr("Scan the part first.")
-    why = none or tr("The scan is being read.")
-    return SurfaceButtons(why, why, none)
+    reading = none or tr("The scan is being read.")
+    return SurfaceButtons(reading, reading, none)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,10 +150,10 @@ def faces_buttons(facts: FacesFacts) -> FacesButtons:
     if facts.own:
         taken = tr("The faces are regions of your own already: drag their corners in the picture.")
         return FacesButtons(facts.no_surface, taken, "", "")
-    first = tr("Measure the thickness first, so that there are faces to begin with.")
+    missing = tr("Measure the thickness first, so that there are faces to begin with.")
     return FacesButtons(
         draw=facts.no_surface,
-        take_found="" if facts.found else facts.no_surface or first,
+        take_found="" if facts.found else facts.no_surface or missing,
         automatic="" if facts.missing else tr("The faces are found automatically already."),
         exchange=facts.missing or tr("The faces are found automatically: there is nothing to exchange."),
     )

@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.files.results.export_list import exports
+from workbench.reasons import first, why
 
 
 class Stage(StrEnum):
@@ -57,11 +58,12 @@ def stage_of(facts: Facts) -> Stage:
 
 def why_not_make(facts: Facts) -> WhyNot:
     """Return the reason why the report cannot be stored in the project's results; `WhyNot` "" if it can."""
-    if facts.making:
-        return WhyNot.MAKING
-    if not facts.scan:
-        return WhyNot.NO_SCAN
-    return WhyNot.READ_ONLY if facts.read_only else WhyNot.NOTHING
+    reason = first(
+        why(facts.making, WhyNot.MAKING),
+        why(not facts.scan, WhyNot.NO_SCAN),
+        why(facts.read_only, WhyNot.READ_ONLY),
+    )
+    return WhyNot(reason)
 
 
 def why_not_export(facts: Facts, kind: str) -> WhyNot:

@@ -108,41 +108,39 @@ def stage_of(facts: Facts) -> Stage:
 
 def disabled_reasons(facts: Facts) -> Buttons:
     """Derive why each button beside the scan is disabled; "" for each that is enabled."""
-    cancel = WhyNot.NOTHING if facts.measuring else WhyNot.NOT_MEASURING
-    return Buttons(_measure(facts), cancel, _record(facts), _take_check(facts))
+    cancel = why(not facts.measuring, WhyNot.NOT_MEASURING)
+    return Buttons(*map(WhyNot, (_measure(facts), cancel, _record(facts), _take_check(facts))))
 
 
-def _measure(facts: Facts) -> WhyNot:
-    reasons = (
-        (facts.live, WhyNot.LIVE),
-        (facts.measuring, WhyNot.MEASURING),
-        (facts.read_only, WhyNot.READ_ONLY),
-        (not facts.camera, WhyNot.NO_CAMERA),
-        (not facts.planes, WhyNot.NO_PLANES),
-        (not facts.source, WhyNot.NO_SOURCE),
-        (not facts.listed, WhyNot.LISTING),
-        (not facts.frames, WhyNot.NO_FRAMES),
-        (not facts.counting, WhyNot.ALL_LEFT_OUT),
+def _measure(facts: Facts) -> str:
+    return first(
+        why(facts.live, WhyNot.LIVE),
+        why(facts.measuring, WhyNot.MEASURING),
+        why(facts.read_only, WhyNot.READ_ONLY),
+        why(not facts.camera, WhyNot.NO_CAMERA),
+        why(not facts.planes, WhyNot.NO_PLANES),
+        why(not facts.source, WhyNot.NO_SOURCE),
+        why(not facts.listed, WhyNot.LISTING),
+        why(not facts.frames, WhyNot.NO_FRAMES),
+        why(not facts.counting, WhyNot.ALL_LEFT_OUT),
     )
-    return next((why for true, why in reasons if true), WhyNot.NOTHING)
 
 
-def _record(facts: Facts) -> WhyNot:
-    if not facts.has_fan:
-        return WhyNot.NO_FAN
-    if facts.measuring:
-        return WhyNot.MEASURING
-    if facts.check_live:
-        return WhyNot.CHECK_LIVE
-    return WhyNot.NOTHING if facts.calibrations_read else WhyNot.READING_CALIBRATIONS
+def _record(facts: Facts) -> str:
+    return first(
+        why(not facts.has_fan, WhyNot.NO_FAN),
+        why(facts.measuring, WhyNot.MEASURING),
+        why(facts.check_live, WhyNot.CHECK_LIVE),
+        why(not facts.calibrations_read, WhyNot.READING_CALIBRATIONS),
+    )
 
 
-def _take_check(facts: Facts) -> WhyNot:
-    if not (facts.camera and facts.planes):
-        return WhyNot.NOT_CALIBRATED
-    if facts.live:
-        return WhyNot.LIVE
-    return WhyNot.NOTHING if facts.calibrations_read else WhyNot.READING_CALIBRATIONS
+def _take_check(facts: Facts) -> str:
+    return first(
+        why(not (facts.camera and facts.planes), WhyNot.NOT_CALIBRATED),
+        why(facts.live, WhyNot.LIVE),
+        why(not facts.calibrations_read, WhyNot.READING_CALIBRATIONS),
+    )
 
 
 @dataclass(frozen=True, slots=True)
