@@ -94,6 +94,8 @@ ROWS = (
             "The project's studies are not printed, as no wing that reads them is there: {names:;}."),
     Finding("plugin.comparison_not_printed", Weight.CAUTION, Effect.NONE,
             "The comparison with another surface is not printed, as the wing {name} is not there."),
+    Finding("plugin.trail_not_printed", Weight.CAUTION, Effect.NONE,
+            "The hash of the project's audit trail is not printed, as the wing {name} is not there."),
     # Results and their uncertainty
     Finding("gauge.none_measured", Weight.GRAVE, Effect.NO_RESULT,
             "No thickness was measured: {reason}"),

@@ -9,7 +9,7 @@ from core.files.project.data import Project
 from core.files.project.folder import results_folder, study_path
 from core.files.project.report_template import read_report_template
 from core.files.project.view_file import read_view
-from core.files.project.witness import Written, evidence_of, witnessed
+from core.files.project.witness import Written, evidence_of, unwitnessed, witnessed
 from core.files.recording.picture_reader import PictureReader
 from core.findings.table import note_of
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
@@ -21,7 +21,7 @@ from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.template import ReportTemplate, sections
 from core.second_process import SecondProcess
-from core.wing import studies_can_be_read
+from core.wing import AUDIT, studies_can_be_read
 
 
 def make_report(
@@ -64,6 +64,8 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
     info, choices = project.info, project.report
     template = read_report_template(folder / choices.template) if choices.template else ReportTemplate()
     content = _with_kept_studies(content, folder, project)
+    if unwitnessed(folder) is not None:
+        content = replace(content, notes=(*content.notes, note_of("plugin.trail_not_printed", name=AUDIT)))
     return replace(
         content,
         serial=info.serial,

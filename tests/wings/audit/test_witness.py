@@ -16,8 +16,12 @@ from core.files.project.folder import create_project, read_project, write_projec
 from core.files.project.next_part import next_part
 from core.files.project.packing import pack_project, unpack_project
 from core.files.project.witness import Written, evidence_of, witnessed
+from core.pipeline.project.report import with_words
+from core.report.pdf import build_report
 from core.wings.audit.people import Rules, person, read_rules, write_rules
-from core.wings.audit.trail import read_trail
+from core.wings.audit.trail import append, read_trail
+from tests.report.report_samples import block_content
+from tests.report.test_report_inspection import words
 from tests.simulated import contents, trisect
 from tests.wings.strangers import Install, install, look_again
 
@@ -146,6 +150,27 @@ def test_without_the_wing_a_project_made_then_has_no_trail_and_is_changed(wing_g
     assert not (new / "audit.jsonl").exists() and read_project(new).project.info.part == "B"
     write_project(new, outside(new))
     unpack_project(pack_project(new, tmp_path / "n.trisectz").path, tmp_path / "out")
+
+
+def test_a_report_names_the_last_entry_but_those_of_reports_and_without_the_wing_says_that_it_is_missing(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, content = read_project(project).project, block_content()
+    entry = read_trail(project).entries[-1]
+    append(project, "reported")
+    (evidence,) = with_words(content, project, made).evidence
+    assert (str(evidence.text), evidence.sha256) == (
+        "Audit trail of the project, SHA-256 of entry 1:", entry.hash,
+    )  # fmt: skip
+    assert entry.hash in words(build_report(with_words(content, project, made)))
+    monkeypatch.setenv(WITHOUT, "audit")
+    look_again()
+    alone = with_words(content, project, made)
+    monkeypatch.undo()
+    look_again()
+    assert alone.evidence == () and [str(one) for one in alone.notes[len(content.notes) :]] == [
+        "The hash of the project's audit trail is not printed, as the wing audit is not there."
+    ]
 
 
 def test_without_the_wing_its_commands_say_which_wing_they_are_of(wing_gone: None, project: Path) -> None:
