@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import cycle, islice
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -22,6 +24,21 @@ MADE = "TRISECT_MADE_ONCE"
 
 SAID_ALOUD = pytest.StashKey[int]()
 """Where a test process that ends at once says why: standard error while a test runs is pytest's, and would be lost."""
+
+
+ENOUGH = 5
+"""Sets in a row that hold a claim: of a claim that every second set breaks, that many hold once in 32."""
+
+K = TypeVar("K")
+
+
+def each_once(kinds: Iterable[K], seeds: Iterable[int], least: int = ENOUGH) -> list[tuple[K, int]]:
+    """Pairs of a kind and a seed by which a claim on all of both is certain: each kind once, `least` sets or more.
+
+    How often it holds over many seeds is for the campaigns of `make accuracy`, with its figures.
+    """
+    each, seed = [*kinds], cycle(seeds)
+    return [(kind, next(seed)) for kind in islice(cycle(each), max(least, len(each)))]
 
 
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:

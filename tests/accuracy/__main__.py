@@ -1,5 +1,5 @@
 """`make accuracy`: measure the accuracy table anew, the hostile one, false alarms on ideal rigs, causes told, the
-simulated tour, or what assumptions do to sets in order.
+simulated tour, what assumptions do to sets in order, or whether remedies help.
 
 Long: hours; `--short` takes a few minutes.
 """
@@ -22,6 +22,7 @@ from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
 from tests.accuracy.causes import benign_cases, benign_table, first_cases, first_table
 from tests.accuracy.hostile_cases import CHECK_POSES, NOTHING_STATED, SEEDS, hostile_cases
+from tests.accuracy.remedies import REMEDIES, after, before, remedies_table
 from tests.accuracy.table import between, table, within_2_sigma
 from tests.accuracy.tour import tour, tour_table
 
@@ -38,7 +39,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("accuracy", "hostile", "ideal", "benign", "causes", "tour", "assumptions"),
+        choices=("accuracy", "hostile", "ideal", "benign", "causes", "tour", "assumptions", "remedies"),
         default="accuracy",
         help="which table",
     )
@@ -65,6 +66,10 @@ def main() -> None:
             list(assumptions.KINDS), assumptions.SEEDS, chosen.out / f"ideal-own-{commit}.jsonl"
         )
         print("\n".join(assumptions.summary(found)))
+        return
+    if chosen.what == "remedies":
+        both = [case for remedy in REMEDIES for case in (before(remedy), after(remedy))]
+        print("\n".join(remedies_table(hostile.run(both, chosen.out / f"remedies-{commit}.jsonl"))))
         return
     if chosen.what in ("benign", "causes"):
         made, table_of = (benign_cases, benign_table) if chosen.what == "benign" else (first_cases, first_table)

@@ -11,6 +11,7 @@ from core.files.results.run_file import read_run
 from core.inspect.conformity import Verdict
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import calibrated_once, measure
+from tests.shared import each_once
 
 SET = {"scale": 0.25, "frames": 36, "camera_views": 10, "plane_poses": 8}
 TOLD = {"scan.fan_shifted", "scan.moved", "scan.frames_moved"}
@@ -29,8 +30,7 @@ def calibrated(tmp_path_factory):
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize("seed", [1, 2, 3])
-@pytest.mark.parametrize("switch", SWITCHES)
+@pytest.mark.parametrize(("switch", "seed"), each_once(SWITCHES, (1, 2, 3)))
 def test_no_movement_makes_a_thickness_wrong_beyond_u_without_a_word(switch, seed, calibrated, tmp_path):
     try:
         measured = measure(Scenario(**SET, **SWITCHES[switch], seed=seed), tmp_path, calibrated)

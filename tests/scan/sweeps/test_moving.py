@@ -55,8 +55,7 @@ def codes(result):
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize("seed", [1, 2, 3])
-@pytest.mark.parametrize("hand", [(14.0, 0.0), (28.0, 0.0), (28.0, 0.35)])
+@pytest.mark.parametrize(("hand", "seed"), [((14.0, 0.0), 1), ((28.0, 0.0), 2), ((28.0, 0.35), 3)])
 def test_points_lie_within_what_is_stated_however_the_hand_moves(hand, seed):
     scenario = replace(ROLLING, hand_mm_s=hand[0], tremor_mm=hand[1], seed=seed)
     result, truth, features = measured(scenario, row_time_us(scenario))
