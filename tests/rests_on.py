@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from copy import deepcopy
 from functools import cache
 from pathlib import Path
@@ -190,12 +190,37 @@ class Tree:
         """Modules that a file of tests names itself, and its own."""
         return {module_name(path)} | self.names_in(module_name(path))
 
+    def reached(self, definition: str) -> set[str]:
+        """Definitions that one names itself."""
+        return self._reached(definition)
+
     def closure(self, names: Iterable[str]) -> set[str]:
         """Definitions that are reached from these, themselves among them; a module's name stands for all of its."""
         return self._closure({one for name in names for one in (self._whole(name) if ":" not in name else {name})})
 
     def proof(self, path: Path) -> set[str]:
         """Definitions that a file of tests rests on: what it reaches, and what the fixtures it asks for reach."""
+        return self._closure(self.begins_with(path))
+
+    def who_reach(self, wanted: Iterable[str], paths: Iterable[Path]) -> dict[str, list[Path]]:
+        """Of files of tests those that rest on each of some definitions: by the arrows taken back, all at once."""
+        begins = {path: self.begins_with(path) for path in paths}
+        back: dict[str, set[str]] = defaultdict(set)
+        for one in self._closure(set().union(*begins.values())):
+            for reached in self._reached(one):
+                back[reached].add(one)
+        found = {}
+        for one in wanted:
+            reaching, waiting = {one}, [one]
+            while waiting:
+                more = back.get(waiting.pop(), set()) - reaching
+                reaching |= more
+                waiting += more
+            found[one] = [path for path, begun in begins.items() if not begun.isdisjoint(reaching)]
+        return found
+
+    def begins_with(self, path: Path) -> set[str]:
+        """Definitions of a file of tests itself, and of the fixtures that it asks for."""
         own = module_name(path)
         asked = _asked_for(ast.walk(parsed(self.root / path)))
         start = self._whole(own)
@@ -203,7 +228,7 @@ class Tree:
             conftest = module_name(folder / "conftest.py")
             if conftest in self.files:
                 start |= self._fixtures(conftest, asked)
-        return self._closure(start)
+        return start
 
     def _closure(self, waiting: set[str]) -> set[str]:
         found: set[str] = set()
@@ -226,7 +251,7 @@ class Tree:
         if module not in self.files:
             return set()
         if not name:
-            return self._imported(module) | self._brought(module) | self._named_in(known.get("", []), module)
+            return self._imported(module) | self._brought(module) | self.named_in(known.get("", []), module)
         if name not in known:  # of the module's own making, or gone
             return self._whole(module)
         return {module} | self._brought(module) | self._by_name(name, module)
@@ -235,7 +260,7 @@ class Tree:
         """What the statements that make a name of a module reach; of those that import it, what it stands for."""
         statements = self._definitions(module)[name]
         imports = [one for one in statements if isinstance(one, ast.Import | ast.ImportFrom)]
-        found = self._named_in([one for one in statements if one not in imports], module)
+        found = self.named_in([one for one in statements if one not in imports], module)
         for one in imports:
             target = self._imports(one, module).get(name, "")
             found |= {target} - {""} if isinstance(one, ast.ImportFrom) else self._of_import(one, module)
@@ -270,7 +295,7 @@ class Tree:
     def _is_package(self, module: str) -> bool:
         return module in self.files and self.files[module].name == "__init__.py"
 
-    def _named_in(self, statements: list[ast.stmt], module: str) -> set[str]:
+    def named_in(self, statements: Sequence[ast.AST], module: str) -> set[str]:
         """What some statements of a module name: by an import, by a name of the module, in a text."""
         left_out = self._left_to_who_asks(module)
         nodes = [one for statement in statements for one in _walk(statement, left_out)]

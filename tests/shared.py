@@ -6,7 +6,6 @@ import os
 import shutil
 import time
 from collections.abc import Callable, Iterable
-from itertools import cycle, islice
 from pathlib import Path
 from typing import TypeVar
 
@@ -37,8 +36,9 @@ def each_once(kinds: Iterable[K], seeds: Iterable[int], least: int = ENOUGH) -> 
 
     How often it holds over many seeds is for the campaigns of `make accuracy`, with its figures.
     """
-    each, seed = [*kinds], cycle(seeds)
-    return [(kind, next(seed)) for kind in islice(cycle(each), max(least, len(each)))]
+    each, some = [*kinds], [*seeds]
+    count = max(least, len(each))
+    return [(each[i % len(each)], some[(i % len(each) + i // len(each)) % len(some)]) for i in range(count)]
 
 
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:

@@ -360,6 +360,12 @@ def test_each_finding_is_rested_on_by_who_names_its_code(proofs):
     assert not of_boards & {code for code in codes if code.startswith("scan.")}
 
 
+def test_who_reaches_a_definition_is_who_rests_on_it(proofs):
+    for one in ("core.scan.standstill:SCORE_LIMIT", "core.image.targets.corners"):
+        found = Tree(ROOT).who_reach([one], proofs)[one]
+        assert found == [path for path, rests_on in proofs.items() if one in rests_on] != []
+
+
 def test_a_proof_of_pictures_rests_on_little_of_the_program(proofs):
     """Where it imports a module, it does not rest on all that this has for others."""
     program = {name for name in Tree(ROOT).closure(["core.cli.app"]) if name.startswith("core.")}
