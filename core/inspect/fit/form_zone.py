@@ -87,13 +87,12 @@ def form_zone(
     misfit = sources.mean(residuals)
     field = PRIOR * max(float(np.sqrt(np.mean(misfit**2))), SMALLEST_FORM_MM) * bumps
     weights = np.clip(1 - (fit.residuals / SILENT_SD) ** 2, 1e-3, None) ** 2 / fit.own**2
-    others = np.hstack([field, design, sources.explained])
-    information = sources.information(others, weights)
-    known = np.ones(len(information))
+    others = np.hstack([field, design, sources.explained, sources.speckle])
+    acting = sources.precision(weights).times(others).T
+    known = np.ones(len(acting))
     known[field.shape[1] : field.shape[1] + design.shape[1]] = 0.0
     wanted = np.eye(len(known))[:, : field.shape[1]]
-    solved = cho_solve(cho_factor(information + np.diag(known)), wanted)
-    of_field = weights * (solved.T @ sources.effects(others).T)
+    of_field = cho_solve(cho_factor(acting @ others + np.diag(known)), wanted).T @ acting
     aside = design[place] @ np.linalg.pinv(design[place])  # the surface itself is no form
     to_places = (np.eye(len(place)) - aside) @ field[place]
     predict = to_places @ of_field

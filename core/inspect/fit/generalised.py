@@ -1,9 +1,9 @@
 """Least squares with the true covariance of the points: what they share is known, not averaged away.
 
 With the errors of `core.inspect.uncertainty.error_sources` everything but a stretch's own noise is common to many
-stretches and
-few in number, so the generalised least-squares estimate of β comes from one small system in which the common errors are
-unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity).
+stretches and few in number, so the generalised least-squares estimate of β comes from one small system in which the
+common errors are unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity). The light
+planes of the sweeps, the most of them, are taken out beforehand (`error_sources.Precision`).
 
 What nothing has measured, such as the change of the rig since its calibration, is no error that the points may be
 asked for at the price of their noise: a fit that makes up for an assumed error follows the noise of whatever shows it.
@@ -84,45 +84,45 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
 
     The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
     """
-    others = np.hstack([design, sources.measured, sources.form])
-    effects = sources.effects(others)
+    others = np.hstack([design, sources.measured, sources.speckle, sources.form])
     fixed, forms = design.shape[1], slice(others.shape[1] - sources.form.shape[1], others.shape[1])
-    prior = np.repeat([0.0, 1.0], [fixed, effects.shape[1] - fixed])
-    weights, factor, scale = np.ones(len(misfit)), np.ones(2), np.ones(effects.shape[1])
+    prior = np.repeat([0.0, 1.0], [fixed, others.shape[1] - fixed])
+    weights, factor, scale = np.ones(len(misfit)), np.ones(2), np.ones(others.shape[1])
     group = sources.of_fan.astype(np.int64)
     form = float(np.clip(np.median(sources.own), SMALLEST_FORM_MM, LARGEST_FORM_MM))
     for _ in range(ROUNDS):
         own = sources.own * np.sqrt(factor[group])
         weight, scale[forms] = weights / own**2, form
-        of_swept, fan_rows = sources.information_of_each(others, weight)
-        information = scale[:, None] * (of_swept + fan_rows.T @ fan_rows) * scale
-        information[np.diag_indices(len(prior))] += prior
-        root = inverse_root(information)
-        solution = root.T @ (root @ (scale * (effects.T @ (weight * misfit))))
-        residuals = (misfit - effects @ (scale * solution)) / own
+        columns, precision = others * scale, sources.precision(weight)
+        acting = precision.times(columns).T
+        root = inverse_root(acting @ columns + np.diag(prior))
+        solution = root.T @ (root @ (acting @ misfit))
+        residuals = precision.times((misfit - columns @ solution)[:, None])[:, 0] / (weight * own)
         variances = (root**2).sum(axis=0)
         form_before, form = form, _form(form, solution[forms], variances[forms])
-        of_fan = float(np.sum((root @ (fan_rows * scale).T) ** 2))  # trace of (Aᵀ W A of the fan) · inverse
-        for number, spent in enumerate((len(prior) - float(prior @ variances) - of_fan, of_fan)):
+        left = (precision.diagonal - ((root @ acting) ** 2).sum(axis=0)) / weight  # redundancy of each stretch
+        for number in range(2):
             mine = group == number
+            spent = float((1 - left[mine]).sum())
             factor[number] = max(1.0, factor[number] * _variance_factor(weights[mine], residuals[mine], spent))
         weights = np.clip(1 - (residuals / SILENT_SD) ** 2, 1e-3, None) ** 2
         if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
             break
-    gains = weight * (((root.T @ root[:, :fixed]).T * scale) @ effects.T)
+    gains = (root.T @ root[:, :fixed]).T @ acting
     assumed = sources.common[:, sources.assumed & ~sources.unexplained]
     if not assumed.shape[1]:
         return Generalised(solution[:fixed], gains, own, form_before, residuals)
-    shared = np.hstack([sources.speckle, sources.sweeps])
     wanted = np.eye(fixed) if wanted is None else wanted
 
     def noise(gains: Array) -> Array:
-        acting = wanted @ gains
-        return np.asarray(np.hypot(np.linalg.norm(acting * own, axis=1), np.linalg.norm(acting @ shared, axis=1)))
+        of_wanted = wanted @ gains
+        of_fan, of_planes = of_wanted @ sources.speckle, (of_wanted @ sources.on_planes) @ sources.by_own_noise
+        acting = np.hstack([of_wanted * own, of_fan, of_planes])
+        return np.asarray(np.linalg.norm(acting, axis=1), dtype=np.float64)
 
-    columns = np.hstack([design, assumed, others[:, fixed:] * scale[fixed : others.shape[1]]])
-    acting = weight * np.hstack([columns, shared]).T
-    gains = _with_assumed(sources.information(columns, weight), acting, gains, assumed.shape[1], noise)
+    columns = np.hstack([design, assumed, columns[:, fixed:]])
+    acting = precision.times(columns).T
+    gains = _with_assumed(acting @ columns, acting, gains, assumed.shape[1], noise)
     return Generalised(gains @ misfit, gains, own, form_before, residuals)
 
 
@@ -131,7 +131,7 @@ def _with_assumed(
 ) -> Array:
     """`gains` (p, J) where what is `assumed`, after the p estimates, takes part as far as `noise` of gains (q,) allows.
 
-    `information` (n, n) is Aᵀ W A of all unknowns, `acting` (n, J) is Aᵀ W.
+    `acting` (n, J) is Dᵀ M of all unknowns, `information` (n, n) is Dᵀ M D.
     """
     fixed = len(gains)
     of_estimate = np.eye(len(information))[:, :fixed]

@@ -27,6 +27,7 @@ from core.inspect.causes import Cause
 from core.inspect.uncertainty.point_errors import PointErrors, along_stripes
 from core.inspect.uncertainty.skewed_light import light_below
 from core.model.arrays import Array
+from core.model.positive_definite import inverse_root
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import Cloud
 
@@ -40,6 +41,42 @@ FLOOR_MM = 2e-4
 LEAST_REST = 0.3
 """What the fan's cells leave of a stretch's noise is never taken for less than this share of a point's: the windows
 that points were averaged over are known by their usual length only."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Precision:
+    """Precision matrix M (J, J) of misfits y that light planes move: M = √W (1 − B (1 − V⁻¹) Bᵀ) √W, by Woodbury.
+
+    √W times what the planes do is B R with Bᵀ B = 1 and few rows R, and V = 1 + R Rᵀ. Of any model D x of the rest
+    Dᵀ M D is the information, and M (y − D x) is W times what it leaves of y with the planes as likely as can be.
+
+    Parameters
+    ----------
+    weight
+        (J,) the diagonal of W.
+    basis
+        B (J, m).
+    root
+        (m, m) lower triangular, with rootᵀ root = V⁻¹.
+    """
+
+    weight: Array
+    basis: csr_array
+    root: Array
+
+    def times(self, columns: Array) -> Array:
+        """Multiply M by `columns` (J, n)."""
+        by_root = np.sqrt(self.weight)[:, None]
+        scaled = by_root * columns
+        felt = self.basis.T @ scaled
+        return np.asarray(by_root * (scaled - self.basis @ (felt - self.root.T @ (self.root @ felt))))
+
+    @property
+    def diagonal(self) -> Array:
+        """Diagonal (J,) of M."""
+        kept = (self.basis @ self.root.T) ** 2
+        taken = np.asarray(self.basis.power(2).sum(axis=1)) - kept.sum(axis=1)
+        return np.asarray(self.weight * (1 - taken))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -152,27 +189,34 @@ class Sources:
             else Cause.LIGHT_FROM_BELOW,
         )
 
+    @property
+    def by_own_noise(self) -> Array:
+        """How the planes follow (3S, 3S) the causes of `sweeps`."""
+        return self.planes[:, self.speckle.shape[1] :]
+
     def effects(self, others: Array) -> Array:
         """Stack the effects A (J, n) on J pieces of stripes: `others` (J, q), the fan's speckle, and the sweeps."""
         return np.hstack([others, self.speckle, self.sweeps])
 
     def information(self, others: Array, weight: Array) -> Array:
-        """Compute the information matrix Aᵀ W A (n, n) of the `effects` A, with the weights W = diag(`weight` (J,))."""
-        of_swept, fan_rows = self.information_of_each(others, weight)
-        return of_swept + fan_rows.T @ fan_rows
-
-    def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
-        """Compute the information matrix (n, n) of the sweeps' stripes, and rows R of the fan's, which add Rᵀ R.
+        """Compute the information matrix Aᵀ W A (n, n) of the `effects` A, with the weights W = diag(`weight` (J,)).
 
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
         fan, swept = np.flatnonzero(self.of_fan), np.flatnonzero(~self.of_fan)
         weighted = weight[swept, None] * others[swept]
-        planes = _triangles(self.on_planes[swept], weight[swept]) @ self.planes
+        planes = _few_rows(self.on_planes[swept], weight[swept])[1] @ self.planes
         across = (self.on_planes[swept].T @ weighted).T @ self.planes
         of_swept = np.block([[weighted.T @ others[swept], across], [across.T, planes.T @ planes]])
         rows = np.hstack([others[fan], self.speckle[fan], self.sweeps[fan]]) * np.sqrt(weight[fan])[:, None]
-        return of_swept, rows
+        return np.asarray(of_swept + rows.T @ rows)
+
+    def precision(self, weight: Array) -> Precision:
+        """Compute the precision of misfits that the `sweeps` move, and each its own noise, of the `weight` (J,)."""
+        basis, rows = _few_rows(self.on_planes, weight)
+        moved = rows @ self.by_own_noise
+        variance = np.eye(len(moved)) + moved @ moved.T
+        return Precision(weight, basis, inverse_root(variance) if len(moved) else variance)
 
     def mean(self, values: Array) -> Array:
         """Compute the weighted mean (J,) or (J, …) over each of J pieces of stripes of `values` (N,) or (N, …)."""
@@ -208,26 +252,30 @@ def _on_planes(sweep: NDArray[np.int64], lever: Array, sweeps: int) -> csr_array
     return csr_array((lever[swept].ravel(), place.ravel(), starts), (len(sweep), size * sweeps))
 
 
-def _triangles(on_planes: csr_array, weight: Array) -> csr_array:
-    """Few rows with the Aᵀ W A of A = `on_planes` (J, 3S), none of its rows empty, and the diagonal `weight` of W.
+def _few_rows(on_planes: csr_array, weight: Array) -> tuple[csr_array, csr_array]:
+    """Few rows R (m, 3S) that stand for A = `on_planes` (J, 3S) with the weights W, and B (J, m): √W A = B R, Bᵀ B = 1.
 
-    Of each sweep the triangle of its QR decomposition: Aᵀ W A itself loses to rounding what little is known of some
-    planes' directions.
+    Of each sweep the QR decomposition: Aᵀ W A itself loses to rounding what little is known of some planes' directions.
     """
     count, columns = on_planes.shape
-    size = on_planes.nnz // max(count, 1)
+    swept = np.flatnonzero(np.diff(on_planes.indptr))
+    size = on_planes.nnz // max(len(swept), 1)
     if not size:
-        return csr_array((0, columns))
-    lever = on_planes.data.reshape(count, size) * np.sqrt(weight)[:, None]
+        return csr_array((count, 0)), csr_array((0, columns))
+    lever = on_planes.data.reshape(-1, size) * np.sqrt(weight[swept])[:, None]
     sweep, each = np.unique(on_planes.indices[::size] // size, return_inverse=True)
     order, members = np.argsort(each, kind="stable"), np.bincount(each)
-    within = np.arange(count) - np.repeat(np.cumsum(members) - members, members)
+    within = np.empty_like(order)
+    within[order] = np.arange(len(swept)) - np.repeat(np.cumsum(members) - members, members)
     stacked = np.zeros((len(sweep), max(int(members.max()), size), size))
-    stacked[each[order], within] = lever[order]
-    triangle = np.asarray(np.linalg.qr(stacked, mode="r"), dtype=np.float64)
-    place = np.broadcast_to(size * sweep[:, None, None] + np.arange(size), triangle.shape)
-    starts = size * np.arange(size * len(sweep) + 1)
-    return csr_array((triangle.ravel(), place.ravel(), starts), (size * len(sweep), columns))
+    stacked[each, within] = lever
+    unit, triangle = np.linalg.qr(stacked)
+    numbers, rows = np.arange(size), size * len(sweep)
+    basis = csr_array(
+        (unit[each, within].ravel(), (size * each[:, None] + numbers).ravel(), on_planes.indptr), (count, rows)
+    )
+    place = np.broadcast_to(size * sweep[:, None, None] + numbers, triangle.shape)
+    return basis, csr_array((triangle.ravel(), place.ravel(), size * np.arange(rows + 1)), (rows, columns))
 
 
 def _add_fan(

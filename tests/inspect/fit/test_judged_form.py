@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from core.findings.proof import ScanFacts
 from core.inspect.evaluate import Inspection, evaluate
@@ -250,16 +251,16 @@ def test_faces_of_which_all_points_lie_aside_by_what_they_share_are_judged_by_th
 
 
 class Explained:
-    """Common errors that lift points by so much."""
+    """Common errors that lift points by so much, and places between them as the nearest one."""
 
     sources = ("camera",)
 
     def __init__(self, height: np.ndarray, points: np.ndarray, pis: np.ndarray) -> None:
         self.change, self.pis = -height[:, None] * points / points[:, 2:], pis
-        self.place = {tuple(uv): k for k, uv in enumerate(pixels(points))}
+        self.place = cKDTree(pixels(points))
 
     def changes(self, uv: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-        return self.change[None, [self.place[tuple(one)] for one in uv]]
+        return self.change[None, self.place.query(uv)[1]]
 
     def planes(self, uv: np.ndarray, sweep: np.ndarray) -> np.ndarray:
         return self.pis[np.where(sweep >= 0, sweep, 0)]

@@ -78,7 +78,7 @@ def test_two_places_of_a_stretch_tell_what_a_displaced_calibration_does_to_all_i
 
 
 @pytest.mark.parametrize("size", [3, 6])
-def test_the_information_of_all_stretches_is_that_of_few_rows_a_sweep(size):
+def test_the_information_and_precision_of_all_stretches_are_those_of_few_rows_a_sweep(size):
     rng, sweeps, cells = np.random.default_rng(3), 7, 5
     sweep = np.sort(rng.choice([-2, -1, 0, 1, 3, 4, 6], 200))
     sweep[sweep == 3] = 4
@@ -96,10 +96,10 @@ def test_the_information_of_all_stretches_is_that_of_few_rows_a_sweep(size):
     columns = np.hstack([others, speckle, shared])
     expected = (columns * weight[:, None]).T @ columns
     np.testing.assert_allclose(sources.information(others, weight), expected, atol=1e-6 * np.abs(expected).max())
-    of_swept, fan_rows = sources.information_of_each(others, weight)
-    of_sweeps = (columns * (weight * (sweep >= 0))[:, None]).T @ columns
-    np.testing.assert_allclose(of_swept, of_sweeps, atol=1e-6 * np.abs(expected).max())
-    np.testing.assert_allclose(fan_rows.T @ fan_rows, expected - of_sweeps, atol=1e-6 * np.abs(expected).max())
+    precision = sources.precision(weight)
+    whole = np.linalg.inv(np.diag(1 / weight) + shared @ shared.T)
+    np.testing.assert_allclose(precision.times(np.eye(200)), whole, atol=1e-6 * np.abs(whole).max())
+    np.testing.assert_allclose(precision.diagonal, whole.diagonal(), atol=1e-6 * np.abs(whole).max())
 
 
 def test_where_no_planes_are_known_the_others_and_the_speckle_are_left():
@@ -115,3 +115,6 @@ def test_where_no_planes_are_known_the_others_and_the_speckle_are_left():
     }
     sources = Sources(**{one.name: known.get(one.name, SimpleNamespace()) for one in fields(Sources)})
     np.testing.assert_allclose(sources.information(others, np.ones(4)), others.T @ others)
+    precision = sources.precision(np.full(4, 2.0))
+    np.testing.assert_allclose(precision.times(others), 2.0 * others)
+    np.testing.assert_allclose(precision.diagonal, 2.0)
