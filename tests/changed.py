@@ -248,8 +248,8 @@ def main() -> None:
     run = touched_on_second(ROOT, files) if second else touched_proofs(ROOT, files)
     left_out = [path.as_posix() for path in files if path not in run]
     if left_out:
-        kind = "tests on a second Python" if second else "proofs"
-        sys.stderr.write(f"{len(left_out)} of {len(files)} files of {kind} left out, for nothing that they rest on ")
+        kind, they = ("tests on a second Python", "name") if second else ("proofs", "rest on")
+        sys.stderr.write(f"{len(left_out)} of {len(files)} files of {kind} left out, for nothing that they {they} ")
         sys.stderr.write("has changed since they passed (.ci/proven):\n" + "".join(f"  {one}\n" for one in left_out))
     print(*(path.as_posix() for path in run))
 
