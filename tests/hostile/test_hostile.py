@@ -6,7 +6,7 @@ from tests.hostile.child import case_name
 from tests.hostile.harness import run_cases
 from tests.hostile.readers import all_readers, good_files
 
-CASES = 2000
+CASES = 500
 SEED = 17
 
 
