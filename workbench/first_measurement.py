@@ -33,6 +33,8 @@ class Facts(NamedTuple):
     """Steps with a calibration that waits to be accepted."""
     running: bool
     """Something is being calibrated or measured."""
+    has_fan: bool = True
+    """The fixed laser lines are there; else two printed boards stand for them."""
 
 
 PROJECT = Instruction(
@@ -80,6 +82,14 @@ SCAN = Instruction(
         "plane in each picture, and so the surface."
     ),
 )
+SCAN_BY_BOARDS = Instruction(
+    "scan",
+    "run",
+    label(
+        "A single line was swept by hand over the part and two printed boards behind it. Press Measure: the camera "
+        "sees where the boards are, and the line on them gives its plane in each picture, and so the surface."
+    ),
+)
 INSPECT = Instruction(
     "inspect",
     "measure",
@@ -102,6 +112,8 @@ FINISHED = Instruction(
 )
 ORDER = (PROJECT, SOLVE_CAMERA, ACCEPT_CAMERA, SOLVE_PLANES, ACCEPT_PLANES, SCAN, INSPECT, REPORT, FINISHED)
 """The instructions in the order of work."""
+ORDERS = {True: ORDER, False: (PROJECT, SOLVE_CAMERA, ACCEPT_CAMERA, SCAN_BY_BOARDS, INSPECT, REPORT, FINISHED)}
+"""The same by whether there is a fan."""
 WAIT = label("Wait a moment: the bar at the bottom says how far it is.")
 
 
@@ -113,5 +125,6 @@ def instruction(facts: Facts) -> Instruction:
     for step, solve, accept in (("camera", SOLVE_CAMERA, ACCEPT_CAMERA), ("planes", SOLVE_PLANES, ACCEPT_PLANES)):
         if facts.states[step] not in SETTLED:
             return accept if step in facts.solved else solve
-    left = (one for one in (SCAN, INSPECT, REPORT) if facts.states[one.page] is not State.DONE)
+    scan = SCAN if facts.has_fan else SCAN_BY_BOARDS
+    left = (one for one in (scan, INSPECT, REPORT) if facts.states[one.page] is not State.DONE)
     return next(left, FINISHED)

@@ -102,7 +102,8 @@ class MainWindow(QMainWindow):
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
         self.rail = StepRail([(step.name, tr(step.title), step.icon) for step in STEPS])
         self.notice_list, self.task_bar = NoticeList(), TaskBar()
-        self.instructions = InstructionBar([tr(each.text) for each in first_measurement.ORDER])
+        texts = dict.fromkeys(tr(each.text) for way in first_measurement.ORDERS.values() for each in way)
+        self.instructions = InstructionBar(list(texts))
         self._led_in: Path | None = None
         self.welcome = WelcomePage(self.projects)
         self._title, self._help = QLabel(), Elided()
@@ -323,6 +324,7 @@ class MainWindow(QMainWindow):
             "import": projects.import_pictures,
             "sample": projects.open_sample,
             "simulated": projects.try_simulated,
+            "simulated without fan": projects.try_simulated_without_fan,
             "save": projects.save,
             "next part": projects.begin_next_part,
             "copy": projects.copies.save_copy,
@@ -339,6 +341,7 @@ class MainWindow(QMainWindow):
             "messages": self._toggle_messages,
             "manual": self._open_manual,
             "first measurement": projects.begin_first_measurement,
+            "first measurement without fan": projects.begin_first_measurement_without_fan,
             "quick card": self._print_quick_card,
             "console": self.console.open,
             "many sets": self.many_sets.open,
@@ -453,7 +456,8 @@ class MainWindow(QMainWindow):
         """What to do next in the first measurement."""
         solved = (name for name, presenter in self.presenters.items() if presenter.waits_to_be_accepted)
         states = {name: state.state for name, state in self.model.states.items()}
-        facts = first_measurement.Facts(self._current, states, frozenset(solved), self._is_working)
+        has_fan = self.model.project.rig.has_fan
+        facts = first_measurement.Facts(self._current, states, frozenset(solved), self._is_working, has_fan)
         return first_measurement.instruction(facts)
 
     @property
@@ -466,7 +470,8 @@ class MainWindow(QMainWindow):
             self._leave_instructions()
             return
         now, waiting = self._instruction(), self._is_working
-        number, count = first_measurement.ORDER.index(now) + 1, len(first_measurement.ORDER)
+        order = first_measurement.ORDERS[self.model.project.rig.has_fan]
+        number, count = order.index(now) + 1, len(order)
         text = tr(first_measurement.WAIT if waiting else now.text)
         can_show = not waiting and now is not first_measurement.FINISHED
         self.instructions.show_instruction(number, count, text, can_show=can_show)

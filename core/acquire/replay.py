@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from core.acquire.pace import Pace
-from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, Shown, SourceSettings, Unplugged
 from core.errors import InputError
 from core.messages import Message
 
@@ -16,10 +16,10 @@ RATE_HZ = 10.0
 ANY_RATE_HZ = (0.0, 10_000.0)
 """Frames per second that can be set: a folder has no limit of its own. 0: as fast as they can be read."""
 
-FRAMES_HELD: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25}
+FRAMES_HELD: dict[Shown, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25, "boards": 25}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
 
-Listing = Callable[[Step, Lasers], Sequence[Path]]
+Listing = Callable[[Shown, Lasers], Sequence[Path]]
 """The pictures of a step under given lasers, in order; empty if there are none."""
 
 
@@ -53,7 +53,7 @@ class ReplaySource:
         listing: Listing,
         read: Callable[[Path], Picture],
         *,
-        holds: dict[Step, int] | None = None,
+        holds: dict[Shown, int] | None = None,
         loops: bool = False,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
@@ -63,7 +63,7 @@ class ReplaySource:
         self._holds = FRAMES_HELD if holds is None else holds
         self._loops = loops
         self._pace = Pace(RATE_HZ, clock, sleep)
-        self._step: Step = "camera"
+        self._step: Shown = "camera"
         self._lasers = Lasers(fan=False, hand=False)
         self._paths: Sequence[Path] = ()
         self._at = self._shown = self._count = 0
@@ -95,8 +95,8 @@ class ReplaySource:
         if settings.rate_hz is not None:
             self._pace.rate_hz = settings.rate_hz
 
-    def prepare(self, step: Step) -> None:
-        """Go to the first picture of this `step` in the folder."""
+    def prepare(self, step: Shown) -> None:
+        """Go to the first picture in the folder of what this `step` shows."""
         self._step = step
         self._at = self._shown = 0
         self._list()
@@ -137,11 +137,11 @@ class ReplaySource:
     @property
     def _rests(self) -> bool:
         """Whether this is the still object without the hand-held laser, which nothing brings to an end."""
-        return self._step == "scan" and not self._lasers.hand
+        return self._step == "boards" or (self._step == "scan" and not self._lasers.hand)
 
     def _list(self) -> bool:
         wanted = self._listing(self._step, self._lasers)
-        other = Lasers(fan=self._step != "camera", hand=self._step == "scan")
+        other = Lasers(fan=self._step not in ("camera", "boards"), hand=self._step == "scan")
         self._paths = wanted or self._listing(self._step, other)
         return bool(wanted)
 

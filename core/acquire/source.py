@@ -24,6 +24,7 @@ __all__ = [
     "Lasers",
     "Picture",
     "Region",
+    "Shown",
     "SourceChoice",
     "SourceInfo",
     "SourceSettings",
@@ -34,6 +35,8 @@ __all__ = [
 
 Step = Literal["camera", "planes", "scan", "check"]
 """What is being recorded, named as the part of the recording set it becomes."""
+Shown = Literal["camera", "planes", "scan", "check", "boards"]
+"""What is before a source: that of a step, or of a scan the boards beside the part, with light on them."""
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 """Grey levels (height, width)."""
@@ -123,8 +126,8 @@ class FrameSource(Protocol):
     def configure(self, settings: SourceSettings) -> None:
         """Change the settings that are not None, before or after `open`; InputError if one cannot be set."""
 
-    def prepare(self, step: Step) -> None:
-        """Announce the step to be recorded next; only simulated rigs and replays change their scene by it."""
+    def prepare(self, step: Shown) -> None:
+        """Announce what is to be shown next; only simulated rigs and replays change their scene by it."""
 
     def lasers(self, lasers: Lasers) -> bool:
         """Switch the lasers, and return whether the source has done it; if False, the user must."""

@@ -22,6 +22,7 @@ from core.cli.language import text_of, tr
 from core.cli.talk import print_always, print_line
 from core.errors import InputError
 from core.files.recording.recorder import Ending
+from core.files.recording.recording_set import boards_beside
 from core.files.recording.rig import read_rig, require_tables
 from core.files.results.camera_file import read_camera
 from core.files.step_graph import FILES
@@ -77,10 +78,13 @@ def request(
     camera = fan = None
     if calibrations is not None and step in ("scan", "check"):
         known = read_calibration(calibrations, has_fan=rig.has_fan)
-        camera, fan = known.camera.camera, known.fan.fan if rig.has_fan else None
+        camera, fan = known.camera.camera, known.fan.fan
     elif calibrations is not None:
         camera = read_camera(calibrations / FILES["camera"]).camera
-    return LiveRequest(step, choice, settings, rig, folder / step, camera, fan, display_px=320, ending=ending)
+    boards = boards_beside(rig, plate=False) if step == "scan" else ()
+    return LiveRequest(
+        step, choice, settings, rig, folder / step, camera, fan, display_px=320, ending=ending, boards=boards
+    )
 
 
 class Recording:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.model import Camera
 from core.model.arrays import Array
@@ -19,11 +18,9 @@ from core.scan.known_planes.points_on_planes import PlaneAgreement, points_on_pl
 from core.scan.network.adjustment import HUBER_AT, REJECT_AT, SILENCED
 from core.scan.network.datum import main_plane
 from core.scan.network.equations import Solution
-from core.scan.network.geometry import CrossingRays
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import settled_equations
-from core.scan.sweeps.ghosts import free_turns
-from core.scan.sweeps.locate import by_sweep, sweeping_frames
+from core.scan.sweeps.ghosts import held_from_turning
 
 _WEIGHTS = Schedule(8, 4, HUBER_AT, REJECT_AT)
 """Of reweighting the points on planes, the sweeps' own crossings staying as they are."""
@@ -59,21 +56,9 @@ def firm_points(
 ) -> PlanePoints:
     """Collect the points on known planes of the sweeps that these and `crossings` keep from turning."""
     rows, plane = points_on_planes(features, planes, camera)
-    firm = _held_from_turning(crossings.followed_by(rows), camera)[len(crossings) :]
+    firm = held_from_turning(crossings.followed_by(rows), camera)[len(crossings) :]
     used, number = np.unique(plane[firm], return_inverse=True)
     return PlanePoints(rows.select(firm), number, tuple(planes[k] for k in used), len(rows))
-
-
-def _held_from_turning(crossings: CrossingTable, camera: Camera) -> NDArray[np.bool_]:
-    """Mask (M,) of the crossings of sweeps that meet more than one straight line.
-
-    A sheet known along one line alone is free to turn about it, and would fall onto the board that it is seen on.
-    """
-    if not len(crossings):
-        return np.zeros(0, dtype=np.bool_)
-    frames = sweeping_frames(crossings)
-    free = free_turns(by_sweep(crossings, frames), CrossingRays.of(crossings, camera), len(frames))
-    return ~np.isin(crossings.a, frames[free.any(axis=1)])
 
 
 def agreements(scan: ScanResult, camera: Camera, control: Control) -> tuple[PlaneAgreement, ...]:

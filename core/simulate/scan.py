@@ -114,8 +114,12 @@ class ScanStage:
 
     def boards(self, number: int, grey: float) -> Picture:
         """Render picture `number` of the boards as they lie, all lasers off; white that faces the lamp has `grey`."""
-        light = self._room(grey)
+        light = self.lit_by_room(grey)
         return self.sensor.expose(light, generator(self.seed, "boards", number), light)
+
+    def lit_by_room(self, grey: float) -> Map:
+        """Compute the light (height, width) of the room alone; white that faces the lamp has the 8-bit `grey`."""
+        return self._room(grey)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
         """Render frame `index`, lit by one of the hand-held laser's `sheets`, or by several during its exposure."""

@@ -155,7 +155,7 @@ def leaves_threads_that_compute() -> None:
         threading.Thread(target=compute, daemon=True).start()
 
 
-def project_to_measure(speaks: str, progress: Progress) -> Project:
+def project_to_measure(speaks: str, has_fan: bool, progress: Progress) -> Project:
     from core.files.project.data import new_project
 
     return new_project("Sample")

@@ -64,6 +64,8 @@ def test_each_instruction_comes_and_they_come_in_their_order() -> None:
         Facts("report", done[5], frozenset(), running=False),
     ]
     assert [instruction(facts) for facts in way] == list(first.ORDER)
+    without_fan = [facts._replace(has_fan=False, states={**facts.states, "planes": State.NOT_NEEDED}) for facts in way]
+    assert list(dict.fromkeys(instruction(facts) for facts in without_fan)) == list(first.ORDERS[False])
 
 
 def words_of(bar: InstructionBar) -> str:

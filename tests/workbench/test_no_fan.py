@@ -9,14 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import TRUE
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, Project, Sources, new_project
 from core.files.project.keys import finished, left_to_do
-from core.scan.preview.shown import stripes_alone
+from core.pipeline.live.events import ScanDetail
+from core.scan.preview.shown import PreviewCloud, stripes_alone
+from core.simulate.scene.known_planes import corner_planes
 from core.states import NO_FAN
 from tests.workbench.pages import scan_cases
 from workbench.main_window import MainWindow
 from workbench.pages.calibration.stage import Stage
+from workbench.pages.scan.guidance import Situation, guidance
 from workbench.pages.scan.stage import Stage as ScanStage
 from workbench.pages.scan.words import NO_LIVE_SCAN, frame_line, frame_sentence
 
@@ -71,7 +75,7 @@ def test_a_scan_can_be_measured_with_the_camera_alone_and_no_check_is_offered(op
     qtbot.waitUntil(lambda: p.stage is ScanStage.RECORDED)
     page.refreshing.at_once()
     assert p.cannot_measure == "" and p.calibrated
-    assert p.live.why_not_start.startswith("A live scan needs a fan")
+    assert p.live.why_not_start == NO_LIVE_SCAN
     assert page.card.isVisible() and not page.check.isVisible() and not page.profiles_fold.isVisible()
 
 
@@ -90,6 +94,49 @@ def test_without_a_recording_its_folder_is_asked_for(opened: MainWindow, qtbot: 
     page: Any = opened.pages["scan"]
     qtbot.waitUntil(lambda: page.picture.image._empty.message == NO_LIVE_SCAN)
     assert page.card.words.text() == NO_LIVE_SCAN and page.source.mode == "folder"
+
+
+def with_boards(model: Any) -> None:
+    project = model.project
+    model.edit("state boards", replace(project, rig=replace(project.rig, known_planes=corner_planes("charuco", TRUE))))
+
+
+def test_with_boards_that_are_stated_a_scan_can_be_recorded_live(opened: MainWindow, qtbot: Any) -> None:
+    model = opened.model
+    with_boards(model)
+    opened.go_to("scan")
+    page: Any = opened.pages["scan"]
+    qtbot.waitUntil(lambda: page.presenter.work.calibrations_read)
+    assert page.presenter.live.why_not_start == ""
+    request = page.presenter.live._request(model.folder)
+    assert request.boards == ("far", "near") and not request.rig.has_fan
+    model.edit("no camera", replace(model.project, accepted=Accepted("", "")))
+    assert page.presenter.live.why_not_start == "Accept a camera calibration first."
+
+
+def test_the_rail_has_five_pages_numbered_without_a_gap(opened: MainWindow) -> None:
+    rail = opened.rail
+    shown = [button.text() for name, button in rail._buttons.items() if not rail._rows[name].isHidden()]
+    assert [text.split()[0] for text in shown] == ["1", "2", "3", "4", "5"]
+    assert not any("planes" in text for text in shown)
+    model = opened.model
+    model.edit("state a fan", replace(model.project, rig=replace(model.project.rig, lines=3)))
+    opened._refresh()
+    assert not any(row.isHidden() for row in rail._rows.values())
+
+
+def test_while_the_boards_are_taken_the_guide_speaks_of_no_fan() -> None:
+    nothing = Situation("", False, False, ("", ""), False, None, (), has_fan=False)
+    cells = np.zeros((2, 2), bool)
+    none = PreviewCloud.joined([])
+
+    def said(stage: Any) -> str:
+        return guidance(
+            nothing._replace(detail=ScanDetail(-1, stage, None, (), cells, cells, 0.0, none, False))
+        ).sentence
+
+    assert said("boards").startswith("Taking the boards")
+    assert said("reference") == "Taking the reference: all lasers are off, nothing moves."
 
 
 def test_a_frame_is_not_said_to_cross_no_line_of_the_fan() -> None:

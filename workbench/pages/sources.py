@@ -45,10 +45,11 @@ def recording_folder(project: Path, step: Step) -> Path:
 def scan_begins_live(model: ProjectModel) -> bool:
     """Whether the scan page starts with the live source, as the project has neither a scan nor other pictures.
 
-    Without a fan none can be recorded. The next part of a series has no scan, but the pictures of its calibrations: it
-    is recorded as these were.
+    With neither a fan nor boards none can be recorded. The next part of a series has no scan, but the pictures of its
+    calibrations: it is recorded as these were.
     """
     project = model.project
     sources = project.sources
     last = sources.planes or sources.camera
-    return project.rig.has_fan and not sources.scan and (not last or _RECORDED.search(last) is not None)
+    by = project.rig.has_fan or bool(project.rig.known_planes)
+    return by and not sources.scan and (not last or _RECORDED.search(last) is not None)

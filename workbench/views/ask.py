@@ -65,6 +65,14 @@ def ask_name_and_folder(parent: QWidget | None, title: str, name: str, folder: P
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
 
 
+def ask_new_project(
+    parent: QWidget | None, title: str, name: str, folder: Path, ways: tuple[str, Sequence[str]]
+) -> tuple[str, Path, int] | None:
+    """Ask for a project's name, its folder and one of `ways` (what they are, and each); None if the user cancels."""
+    dialog = _NameAndFolder(parent, title, name, folder, ways)
+    return (*dialog.answer(), dialog.way()) if dialog.exec() == QDialog.DialogCode.Accepted else None
+
+
 def ask_line(parent: QWidget | None, title: str, text: str) -> str:
     """Ask for one line of text; "" if the user cancels."""
     line, given = QInputDialog.getText(parent, title, text)
@@ -152,7 +160,9 @@ class _NameAndPin(QDialog):
 
 
 class _NameAndFolder(QDialog):
-    def __init__(self, parent: QWidget | None, title: str, name: str, folder: Path) -> None:
+    def __init__(
+        self, parent: QWidget | None, title: str, name: str, folder: Path, ways: tuple[str, Sequence[str]] = ("", ())
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle(title)
         self.setMinimumWidth(480)
@@ -170,6 +180,12 @@ class _NameAndFolder(QDialog):
         form = QFormLayout(self)
         form.addRow(tr("Name"), self._name)
         form.addRow(tr("In folder"), place)
+        self._way = Choice()
+        asked, answers = ways
+        self._way.addItems(list(answers))
+        self._way.setVisible(bool(answers))
+        if answers:
+            form.addRow(asked, self._way)
         form.addRow(self._will)
         form.addRow(self._buttons)
         self._name.textChanged.connect(self._check)
@@ -179,6 +195,10 @@ class _NameAndFolder(QDialog):
     def answer(self) -> tuple[str, Path]:
         """Name and folder."""
         return self._name.text().strip(), Path(self._folder.text().strip())
+
+    def way(self) -> int:
+        """Number of the way that is chosen, from 0."""
+        return max(self._way.currentIndex(), 0)
 
     def _browse(self) -> None:
         folder = choose_folder(self, tr("Folder for the project"), Path(self._folder.text()))

@@ -19,7 +19,7 @@ from core.acquire.drivers.genicam_features import (
     make_grey,
 )
 from core.acquire.drivers.pixel_formats import decode
-from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
+from core.acquire.source import Capabilities, Frame, Lasers, Shown, SourceSettings, Unplugged
 from core.errors import InputError, WrongValue
 from core.messages import Message
 
@@ -195,7 +195,7 @@ class GenICamSource:
                 ) from problem
         self._wanted = self._wanted.updated(settings)
 
-    def prepare(self, step: Step) -> None:
+    def prepare(self, step: Shown) -> None:
         """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:

@@ -23,10 +23,10 @@ from core.acquire.source import (
     Frame,
     Lasers,
     Picture,
+    Shown,
     SourceChoice,
     SourceInfo,
     SourceSettings,
-    Step,
     Unplugged,
 )
 from core.acquire.source_kind import DEVICE, SourceKind
@@ -171,7 +171,7 @@ class OpenCVSource:
             self._apply(settings)
         self._wanted = self._wanted.updated(settings)
 
-    def prepare(self, step: Step) -> None:
+    def prepare(self, step: Shown) -> None:
         """Do nothing: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:

@@ -140,7 +140,8 @@ class Project:
     `rejected`: ids of calibrations that were found and are not wanted. `inspection`: the features measured beside the
     thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones. `artefacts`: those
     that its rig is checked by, beside the user's own. `callouts`: by features, how far (right, down) in pixels the
-    plate with its result was dragged from its place on the surface.
+    plate with its result was dragged from its place on the surface. `plate_beside`: whether the plane target is left
+    beside the part, so that live scans are checked by it; None: not answered yet.
     """
 
     info: ProjectInfo = field(default_factory=ProjectInfo)
@@ -155,6 +156,7 @@ class Project:
     studies: tuple[KeptStudy, ...] = ()
     artefacts: tuple[Artefact, ...] = ()
     callouts: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
+    plate_beside: bool | None = None
 
     def printed_in(self, language: str) -> Project:
         """Set the language of the project's report to `language`, unless the project states one."""
@@ -190,3 +192,9 @@ class ProjectFile:
 def new_project(name: str) -> Project:
     """Make a project called `name`, with nothing measured, for the rig of the published paper."""
     return Project(ProjectInfo(name=name))
+
+
+def new_project_without_fan(name: str) -> Project:
+    """Make a project called `name`, with nothing measured, for a camera and a line laser; no board is stated yet."""
+    project = new_project(name)
+    return replace(project, rig=replace(project.rig, lines=0, angle=0.0))

@@ -91,12 +91,13 @@ class ProjectTables(Table):
     callouts: dict[str, tuple[Finite, Finite]] = Field(
         default_factory=dict, description="a table of two numbers each, in pixels"
     )
+    plate_beside: bool | None = Field(default=None, description="true, false or null")
     results: dict[str, Done] = Field(default_factory=dict)
 
 
 _EARLIER_STEPS = {"inspect": "gauge", "features": "inspection"}
 """Names of results up to schema 9."""
-SCHEMA = 12
+SCHEMA = 13
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -113,6 +114,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}), _EARLIER_STEPS)},
     10: lambda tables: {**tables, "accepted": _renamed(tables.get("accepted", {}), EARLIER_CALIBRATIONS)},
     11: lambda tables: tables,  # certificates of targets, laboratories of artefacts, places of callouts: may be none
+    12: lambda tables: tables,  # whether the plate is left beside the part, which need not be answered
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -164,6 +166,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
         "studies": [{**asdict(study), "title": kept(study.title)} for study in project.studies],
         "artefacts": [{**asdict(one), "due": one.due and one.due.isoformat()} for one in project.artefacts],
         "callouts": {name: list(moved) for name, moved in sorted(project.callouts.items())},
+        "plate_beside": project.plate_beside,
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
 
@@ -228,6 +231,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         studies=file.studies,
         artefacts=tuple(table.artefact() for table in file.artefacts),
         callouts=dict(file.callouts),
+        plate_beside=file.plate_beside,
     )
     return ProjectFile(project, file.results, file.created, file.saved)
 

@@ -348,15 +348,30 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     reference, frames = scan_frames(folders.get("scan"))
     check = plane_pairs(folders.get(CHECK))
     boards = board_pictures(folders.get(KNOWN_PLANES), rig.known_planes)
-    as_plane_target = KnownPlaneTarget(
-        rig.plane_target, rig.plane_board, rig.plane_margin_mm, PLANE_TARGET, temperature=rig.part.target
-    )
     known = tuple(
-        PlanePictures(name, rig.known_planes.get(name, as_plane_target), boards.get(name, ()))
+        PlanePictures(name, stated_board(rig, name), boards.get(name, ()))
         for name in sorted({*boards, *rig.known_planes})
     )
     further = {first: others for part in _BRACKETED for first, others in further_exposures(folders.get(part)).items()}
     return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, rig_hash, known)
+
+
+PLATE = "plate"
+"""Name of the plane target's plate where it lies beside the part."""
+
+
+def boards_beside(rig: Rig, *, plate: bool) -> tuple[str, ...]:
+    """List the names of the boards that lie beside the part in a scan: those the rig states, and the `plate`."""
+    names = sorted(rig.known_planes)
+    return tuple(names) if not plate or PLATE in names or not rig.has_fan else (*names, PLATE)
+
+
+def stated_board(rig: Rig, name: str) -> KnownPlaneTarget:
+    """Return what a rig states of the board called `name`; without a table of its own it is the plane target."""
+    as_plane_target = KnownPlaneTarget(
+        rig.plane_target, rig.plane_board, rig.plane_margin_mm, PLANE_TARGET, temperature=rig.part.target
+    )
+    return rig.known_planes.get(name, as_plane_target)
 
 
 def _paths(recording_set: RecordingSet, part: str) -> list[Path]:

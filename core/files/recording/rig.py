@@ -319,6 +319,7 @@ class PlanTable(Table):
     poses: _Count1 | None = Field(None, description=_A_COUNT)
     sweeps: _Count1 | None = Field(None, description=_A_COUNT)
     check_poses: int | None = Field(None, ge=0, le=20, description="a whole number, 0 to 20")
+    corner_deg: float | None = Field(None, ge=60, le=170, allow_inf_nan=False, description="an angle from 60 to 170")
     speckle: float | None = Field(None, ge=0, allow_inf_nan=False, description="a contrast not below 0")
     stripe_grey: _Above | None = Field(None, description=_A_NUMBER)
     stripe_sigma_mm: _Length | None = Field(None, description=_A_LENGTH)
@@ -883,6 +884,11 @@ def _target(path: Path, name: str, table: TargetTable | _KnownPlaneTable) -> Tar
         raise InputError(
             Message("rig.target_wrong", "{name}: {reason}", name=name, reason=error.what), where=path
         ) from error
+
+
+def known_planes_of(tables: RigTables, path: Path) -> dict[str, KnownPlaneTarget]:
+    """Make the boards that the tables [known_planes.NAME] of a rig.toml at `path` state; InputError if one is wrong."""
+    return _known_planes(path, "", tables.known_planes or {})
 
 
 def _known_planes(path: Path, within: str, tables: Mapping[str, _KnownPlaneTable]) -> dict[str, KnownPlaneTarget]:

@@ -11,6 +11,7 @@ from core.errors import InputError
 from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_planes, read_stored_poses
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
+from core.pipeline.live.boards import LiveBoards
 from core.pipeline.live.commands import LiveRequest
 from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
@@ -27,8 +28,8 @@ CHECK_EVERY_S = 1.0
 class ScanChecks:
     """Checks of a live scan and advice on exposure, sent to the window whenever their results change."""
 
-    def __init__(self, context: LiveContext, previewer: ScanPreviewer) -> None:
-        self._context, self._previewer = context, previewer
+    def __init__(self, context: LiveContext, previewer: ScanPreviewer, boards: LiveBoards) -> None:
+        self._context, self._previewer, self._boards = context, previewer, boards
         self._image_size = (0, 0)
         self._poses = calibrated_poses(context.request)
         self._planes_taken = planes_acquisition(context.request)
@@ -52,7 +53,7 @@ class ScanChecks:
         """Compare the section of a new reference's stripes with the calibration's, and make the checks anew."""
         request = self._context.request
         camera, fan = request.camera, request.fan
-        if camera is not None and fan is not None and not _is_readjusted(request):
+        if camera is not None and fan is not None and fan.lines and not _is_readjusted(request):
             stripes = [piece for pieces in self._previewer.fan_lines for piece in pieces]
             self._section = changed_section(self._poses, stripes, camera, fan)
         self.reference()
@@ -87,11 +88,18 @@ class ScanChecks:
             stripe_px=self._stripe_px,
             fresh_days=request.rig.validity.calibration_days or FRESH_DAYS,
             section=self._section,
+            boards=self._boards.wanted,
+            boards_missing=self._boards.missing,
         ).checks()
+        if not request.rig.has_fan:
+            self._emit(checks)
+            return
         now = datetime.now().astimezone()
         here = Acquisition(self._context.camera, now, now)
         hours = hours_of_sitting(self._planes_taken, here, request.rig.validity.fresh_hours)
-        checks = (*checks, rig_check(request.check, now, hours))
+        self._emit((*checks, rig_check(request.check, now, hours)))
+
+    def _emit(self, checks: tuple[Check, ...]) -> None:
         if checks != self._told:
             self._told = checks
             self._context.emit(LiveChecks(checks))

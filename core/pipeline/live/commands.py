@@ -49,6 +49,8 @@ class LiveRequest:
         The project whose history holds the fan, and its id there: it says how sharp the fan's stripes were then.
     check
         The last interim check of these calibrations; None if there is none.
+    boards
+        Names of the boards that lie beside the part during the scan; their pictures are taken before it.
     """
 
     step: Step
@@ -67,6 +69,7 @@ class LiveRequest:
     ending: Ending = ".png"
     kept_planes: tuple[Path, str] | None = None
     check: InterimCheck | None = None
+    boards: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,11 @@ class Switch:
 @dataclass(frozen=True, slots=True)
 class TakeReference:
     """Command to take the reference, with the fan alone on; given again while it is waited for: take it as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeBoards:
+    """Command to take the boards' pictures, all lasers off; given again while they are sought: go on without some."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,4 +142,6 @@ class LookFor:
     target: Target
 
 
-Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Mark | Stop | Configure | Discard | LookFor
+Command = (
+    Capture | Auto | Switch | TakeReference | TakeBoards | Pause | Resume | Mark | Stop | Configure | Discard | LookFor
+)

@@ -76,8 +76,8 @@ class PlanesDetail:
     wanted: Array | None = None
 
 
-ScanStage = Literal["reference", "ready", "scanning", "paused"]
-"""Waiting for the reference; waiting for Resume; recording; not recording until Resume."""
+ScanStage = Literal["boards", "reference", "ready", "scanning", "paused"]
+"""Taking the boards' pictures; waiting for the reference; waiting for Resume; recording; not recording until Resume."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

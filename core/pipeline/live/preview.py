@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from core.acquire.source import Frame, Picture
@@ -18,6 +19,7 @@ from core.scan.features.extraction import (
     choose_sweep_stripe,
     read_reference,
 )
+from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview, PreviewCloud, empty_preview
 
@@ -50,14 +52,14 @@ class ReferenceMismatch:
 class ScanPreviewer:
     """Previewer of a scan: it reads the reference and then frames, one at a time.
 
-    Without a calibrated camera and fan it shows stripes only; `has_fan` says whether the rig has one. An error nobody
-    thought of ends the preview, never the recording.
+    Without a calibrated camera and fan it shows stripes only; `has_fan` says whether the rig has one. If not, `know`
+    the planes by which sweeps are located. An error nobody thought of ends the preview, never the recording.
     """
 
     def __init__(
         self, camera: Camera | None, fan: Fan | None, stripe: StripeSettings | None = None, *, has_fan: bool = True
     ) -> None:
-        self._camera, self._fan, self._stripe, self._has_fan = camera, fan, stripe, has_fan
+        self._camera, self._known, self._stripe, self._has_fan = camera, fan and Control(fan), stripe, has_fan
         self._reference: ReferenceFeatures | None = None
         self._preview: Preview | None = None
         self._seen: list[StripeSettings] = []
@@ -79,6 +81,10 @@ class ScanPreviewer:
         """Largest grey level of the pictures."""
         return 255.0 if self._reference is None else self._reference.full_scale
 
+    def know(self, planes: Sequence[KnownPlane]) -> None:
+        """Set the known planes of the scene, before the reference is read."""
+        self._known = replace(self._known or Control(Fan(())), planes=tuple(planes))
+
     def departed(self, picture: Picture) -> ReferenceMismatch:
         """Check whether a picture still agrees with the reference; `reason` is None if so, or before a reference."""
         if self._reference is None:
@@ -99,8 +105,9 @@ class ScanPreviewer:
             If it shows no line of a fan that is there.
         """
         self._reference = read_reference(picture, FeatureOptions(fan_stripe=self._stripe, has_fan=self._has_fan))
-        if self._camera is not None and self._fan is not None:
-            self._preview = Preview(self._reference, self._camera, self._fan)
+        known = self._known
+        if self._camera is not None and known is not None and (known.fan.lines or known.planes):
+            self._preview = Preview(self._reference, self._camera, known)
         return picture
 
     def look(self, index: int, name: str, frame: Frame) -> PreviewedFrame | PreviewFailed | None:

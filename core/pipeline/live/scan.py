@@ -1,4 +1,4 @@
-"""A live scan: the reference first, then every frame to the disk, and as many as there is time for to the preview."""
+"""A live scan: boards and reference first, then every frame to the disk, and as many as there is time for previewed."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from core.acquire.source import Frame, Lasers, Picture, Unplugged
 from core.errors import InputError
 from core.files.recording.marks import mark_frame
 from core.image.exclusion import MOVEMENTS
-from core.messages import Message, label
+from core.messages import Message, label, plain
+from core.pipeline.live.boards import FoundBoards, LiveBoards
 from core.pipeline.live.checks import ScanChecks
-from core.pipeline.live.commands import Command, Configure, Mark, Pause, Resume, TakeReference
+from core.pipeline.live.commands import Command, Configure, Mark, Pause, Resume, TakeBoards, TakeReference
 from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
 from core.pipeline.live.preview import PreviewedFrame, PreviewFailed, ReferenceMismatch, ScanPreviewer
@@ -54,7 +55,7 @@ _SLOWER_ADVICE = {
     ".pgm": Message("live.lower_rate", "Choose a lower frame rate."),
 }
 
-_FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
+_DARK = Lasers(fan=False, hand=False)
 
 
 class FrameStore(Protocol):
@@ -87,7 +88,10 @@ class LiveScan:
         self._previewer = ScanPreviewer(
             request.camera, request.fan, request.options.stripe, has_fan=request.rig.has_fan
         )
-        self._stage: ScanStage = "reference"
+        self._boards = LiveBoards(context)
+        self._stage: ScanStage = "boards" if request.boards and request.camera is not None else "reference"
+        has_fan = request.rig.has_fan
+        self._fan_alone, self._all = Lasers(fan=has_fan, hand=False), Lasers(fan=has_fan, hand=True)
         self._self_switching = False
         self._looking = self._forced = False
         self._before: Picture | None = None
@@ -99,7 +103,7 @@ class LiveScan:
         self._looked = False
         self._new: list[PreviewCloud] = []
         self._renewed = False
-        self._checks = ScanChecks(context, self._previewer)
+        self._checks = ScanChecks(context, self._previewer, self._boards)
         self._features: RecordedFeatures | None = None
 
     @property
@@ -108,15 +112,19 @@ class LiveScan:
         return self._stage == "scanning"
 
     def begin(self) -> None:
-        """Switch the lasers as the scan needs them now; take the reference, or ask for it, if there is none."""
-        self._self_switching = self._context.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
+        """Switch the lasers as the scan needs them now; take boards and reference, or ask for them, if they are not."""
+        stage = self._stage
+        self._context.source.prepare("boards" if stage == "boards" else "scan")
+        self._self_switching = self._context.switch(
+            _DARK if stage == "boards" else self._fan_alone if stage == "reference" else self._all
+        )
         self._before = None
-        if self._stage != "reference":
+        if stage not in ("boards", "reference"):
             return
         if self._self_switching:
             self._looking = True
         elif not self._looking:
-            self._ask_for_reference()
+            self._ask()
 
     def frame(self, frame: Frame) -> None:
         """Record a frame, and have it previewed if there is time."""
@@ -126,8 +134,8 @@ class LiveScan:
             self._checks.begin((width, height))
             levels = np.uint8 if frame.picture.dtype == np.uint8 else np.uint16
             Thread(target=get_ready_for_live, args=(levels,), name="warm up", daemon=True).start()
-        if self._stage == "reference" and self._looking:
-            self._try_reference(frame.picture)
+        if self._stage in ("boards", "reference") and self._looking:
+            self._try_at_rest(frame.picture)
         elif self._stage == "ready" and self._checks.are_due:
             self._context.worker.start(self._previewer.departed, frame.picture)
         elif self._stage == "scanning":
@@ -137,7 +145,7 @@ class LiveScan:
         """Take the result of previewing a frame or reading the reference; return the frame previewed, else None."""
         try:
             result = self._context.worker.take()
-        except InputError as error:  # the reference shows no fan
+        except InputError as error:  # the reference shows no fan, or a board's picture is none
             self._refused(error.message)
             return None
         match result:
@@ -150,6 +158,8 @@ class LiveScan:
                 return frame
             case ReferenceMismatch(reason):
                 self._checks.reference(reason)
+            case FoundBoards() if self._stage == "boards":
+                self._take_boards(result)
             case np.ndarray() if self._stage == "reference":
                 self._accept(result)
         return None
@@ -178,13 +188,16 @@ class LiveScan:
         )
 
     def handle(self, command: Command) -> None:
-        """Follow the commands TakeReference, Pause, Resume, Mark and Configure; ignore all others."""
+        """Follow the commands TakeBoards, TakeReference, Pause, Resume, Mark and Configure; ignore all others."""
         match command:
             case Configure():
                 self._checks.configured()
             case TakeReference() if self._stage == "reference":
-                self._context.answered()
-                self._forced, self._looking, self._before = self._looking, True, None
+                self._look()
+            case TakeBoards() if self._stage == "boards":
+                self._look()
+            case TakeReference() if self._stage == "boards":
+                pass
             case TakeReference():
                 self._context.notice(
                     Message(
@@ -288,14 +301,34 @@ class LiveScan:
             return
         self._context.notice(Message("live.marked", "{name} is marked.", name=name))
 
-    def _ask_for_reference(self) -> None:
-        fan_alone = Message(
-            "live.take_reference",
-            "Switch the three-line laser on and the hand-held laser off, then take the reference.",
-        )
-        self._context.ask(fan_alone, label("Take the reference"), TakeReference())
+    def _look(self) -> None:
+        """Look for what is at rest from the next picture on; told so a second time: take it as it is."""
+        self._context.answered()
+        self._forced, self._looking, self._before = self._looking, True, None
 
-    def _try_reference(self, picture: Picture) -> None:
+    def _ask(self) -> None:
+        if self._stage == "boards":
+            boards = Message(
+                "live.take_boards",
+                "Switch all lasers off and let light fall on the boards ({boards:and}), then take them. From now on "
+                "nothing may move.",
+                boards=tuple(plain(name) for name in self._boards.missing),
+            )
+            self._context.ask(boards, label("Take the boards"), TakeBoards())
+            return
+        if self._fan_alone.fan:
+            alone = Message(
+                "live.take_reference",
+                "Switch the three-line laser on and the hand-held laser off, then take the reference.",
+            )
+        else:
+            alone = Message(
+                "live.take_dark_reference",
+                "Dim the light as for the scan, with the hand-held laser off, then take the reference.",
+            )
+        self._context.ask(alone, label("Take the reference"), TakeReference())
+
+    def _try_at_rest(self, picture: Picture) -> None:
         """Take a picture that is like the one before: nothing moves, no laser is swept over it."""
         before, self._before = self._before, picture
         if self._context.worker.busy:
@@ -310,7 +343,24 @@ class LiveScan:
                 )
             )
             return
-        self._context.worker.start(self._previewer.read_reference, picture)
+        camera = self._context.request.camera
+        if self._stage == "boards" and camera is not None:
+            self._context.worker.start(self._boards.seek, picture, camera)
+        else:
+            self._context.worker.start(self._previewer.read_reference, picture)
+
+    def _take_boards(self, found: FoundBoards) -> None:
+        """Keep the boards that were found; with all of them, or told to do without the others, go on."""
+        why = self._boards.take(found)
+        has_some = bool(self._boards.planes) or self._fan_alone.fan
+        if why is not None and not (self._forced and has_some):
+            self._refused(why)
+            return
+        self._looking = self._forced = False
+        self._previewer.know(self._boards.planes)
+        self._stage = "reference"
+        self._checks.reference()
+        self.begin()
 
     def _accept(self, picture: Picture) -> None:
         """The reference is good: keep it and go on."""
@@ -328,11 +378,11 @@ class LiveScan:
         self._new, self._renewed = [fan], True
         if self._coverage is not None:
             self._coverage.add(fan.uv)
-        if self._self_switching and self._context.switch(_BOTH):
+        if self._self_switching and self._context.switch(self._all):
             self._stage = "scanning"
             return
         self._stage = "ready"
-        self._context.lasers = _BOTH
+        self._context.lasers = self._all
         sweep = Message(
             "live.start_sweeping", "Switch the hand-held laser on, press Start, and sweep it slowly over the object."
         )
@@ -343,7 +393,7 @@ class LiveScan:
         self._forced = False
         if not self._self_switching:
             self._looking = False
-            self._ask_for_reference()
+            self._ask()
 
     def _add(self, preview: FramePreview) -> None:
         """Keep what the frame adds until it is shown."""

@@ -24,7 +24,9 @@ from core.errors import InputError
 from core.files.pictures import read_picture
 from core.files.recording.replay_pictures import ReplayPictures
 from core.files.recording.rig import Rig
+from core.image.targets.kinds import Rectangle
 from core.messages import Message
+from core.simulate.effects.boards import NO_BOARDS, BoardsBeside
 from core.simulate.scenario import Scenario
 
 
@@ -105,6 +107,15 @@ def scenario_of(text: str) -> Scenario:
     return replace(scenario, scale=min(scenario.scale, sample_scenario().scale))
 
 
+def without_fan(scenario: Scenario, rig: Rig) -> Scenario:
+    """Copy a scenario with its fan off, as a `rig` without one has it, and with the boards that this states."""
+    boards = scenario.boards
+    if rig.known_planes and boards == NO_BOARDS:
+        outlines = any(isinstance(one.target, Rectangle) for one in rig.known_planes.values())
+        boards = BoardsBeside(corner=True, kind="rectangle" if outlines else "charuco")
+    return replace(scenario, fan_lines=0, boards=boards)
+
+
 def _make_simulated(id_: str, rig: Rig | None) -> FrameSource:
     from core.simulate.live.scene import LiveScene
     from core.simulate.live.source import SimulatedSource
@@ -112,6 +123,8 @@ def _make_simulated(id_: str, rig: Rig | None) -> FrameSource:
     scenario = scenario_of(id_)
     if rig is None:
         return SimulatedSource(LiveScene(scenario))
+    if not rig.has_fan:
+        return SimulatedSource(LiveScene(without_fan(scenario, rig), rig.camera_target, rig.plane_target))
     scene = LiveScene(scenario, rig.camera_target, rig.plane_target)
     lines, angle = scene.rig.fan.lines, float(np.median(scene.rig.fan.angles))
     if rig.lines != lines or abs(rig.angle - angle) > radians(0.2):

@@ -37,7 +37,7 @@ def sample_project(folder: Path, speaks: str = "en", progress: Progress = silent
             todo=Message("advice.choose_another_name", "choose another name"),
         )
     remove_leftovers(folder)
-    unmeasured = sample_to_measure(speaks, progress)
+    unmeasured = sample_to_measure(speaks, progress=progress)
     with folder_beside(folder) as beside:
         made = make_folder(beside / "project")
         create_project(made, finished_project(made, unmeasured, progress))
@@ -45,17 +45,19 @@ def sample_project(folder: Path, speaks: str = "en", progress: Progress = silent
     return folder
 
 
-def sample_to_measure(speaks: str = "en", progress: Progress = silent) -> Project:
+def sample_to_measure(speaks: str = "en", has_fan: bool = True, progress: Progress = silent) -> Project:
     """Make a project of the sample's pictures with nothing measured; render these pictures if they are not there.
+
+    Without a fan the block is measured by two printed boards.
 
     Raises
     ------
     InputError
         If the cache folder cannot be written to.
     """
-    remove_leftovers(sample_folder())
+    remove_leftovers(sample_folder(has_fan))
     compile_ahead(progress)
-    return _described(project_from_set(sample_set(progress), "Sample"), language(speaks).label)
+    return _described(project_from_set(sample_set(progress, has_fan), "Sample"), language(speaks).label)
 
 
 def clear_unfinished(folder: Path) -> None:

@@ -96,19 +96,36 @@ def points_on_planes(
     `camera` takes the distortion off.
     """
     cell_px, width = features.crossings.half_length_px, features.crossings.share_b.shape[1]
-    faces = [_Face.of(plane, features.image_size) for plane in planes]
-    cells = [
-        cell
-        for frame in features.frames
-        for piece, line in enumerate(frame.centrelines)
-        for plane, face in enumerate(faces)
-        for cell in _cells(plane, frame.index, piece, line, face, camera, cell_px)
-    ]
-    cells.sort(key=lambda cell: (cell.plane, cell.frame, cell.piece, cell.number))
-    kept: list[tuple[_Cell, Array]] = []
-    for _, group in groupby(cells, key=lambda cell: (cell.plane, cell.frame)):
-        kept.extend(_on_one_line(list(group)))
-    return bent_back(_table(kept, cell_px, width), camera), np.array([c.plane for c, _ in kept], dtype=np.int64)
+    seen = SeenBoards(planes, features.image_size, camera)
+    return seen.points([(frame.index, frame.centrelines) for frame in features.frames], cell_px, width)
+
+
+class SeenBoards:
+    """Boards of known planes as `camera` sees them, in pictures of `image_size` (width, height)."""
+
+    def __init__(self, planes: Sequence[KnownPlane], image_size: tuple[int, int], camera: Camera) -> None:
+        self._faces, self._camera = [_Face.of(plane, image_size) for plane in planes], camera
+
+    def points(
+        self, frames: Sequence[tuple[int, Sequence[Centreline]]], cell_px: float, width: int
+    ) -> tuple[CrossingTable, Index]:
+        """Collect the points of `frames`, each an index with its centrelines, as `points_on_planes` does.
+
+        Cells are `cell_px` long, and rows have shares `width` wide.
+        """
+        cells = [
+            cell
+            for frame, lines in frames
+            for piece, line in enumerate(lines)
+            for plane, face in enumerate(self._faces)
+            for cell in _cells(plane, frame, piece, line, face, self._camera, cell_px)
+        ]
+        cells.sort(key=lambda cell: (cell.plane, cell.frame, cell.piece, cell.number))
+        kept: list[tuple[_Cell, Array]] = []
+        for _, group in groupby(cells, key=lambda cell: (cell.plane, cell.frame)):
+            kept.extend(_on_one_line(list(group)))
+        plane = np.array([cell.plane for cell, _ in kept], dtype=np.int64)
+        return bent_back(_table(kept, cell_px, width), self._camera), plane
 
 
 def frames_across(features: ScanFeatures, planes: Sequence[KnownPlane]) -> int:

@@ -104,36 +104,63 @@ def seek_plane(board: BoardOf, pictures: Sequence[tuple[str, NDArray[Any]]], cam
     freedom = max(3 * (len(seen) - 1), 1)
     if moved_mm > LEAST_SHIFT_MM and chdtrc(freedom, squares) < MOVED:
         return SoughtPlane(None, (*notes, note_of("scan.board_moved", board=board.name, mm=moved_mm)))
-    first = seen[0]
-    plate, by_camera = Plate(board.target, first.view, camera, board.margin_mm), np.zeros((3, 10))
+    by_camera = np.zeros((3, 10))
     for w, one in zip(weights, seen, strict=True):
         by_camera += of_pose @ w @ one.by_camera
-    even = EvenPlate.of(shown[0], first.view, plate_level(shown[0], first.view))
-    plane = KnownPlane(
-        board.name,
-        pi,
-        _outline(plate, first.pose, camera),
-        max(1.0, squares / freedom) * of_pose,
-        _of_flatness(first.pose, plate.corners, board.tolerance.flatness_sd_mm),
-        by_camera,
-        even.uneven,
-        board.tolerance.size_sd,
-        scale_assumed=board.tolerance.scale_sd is None,
-        flatness_assumed=board.tolerance.flatness_mm is None,
-        print_of=board.print_of or board.name,
+    even = EvenPlate.of(shown[0], seen[0].view, plate_level(shown[0], seen[0].view))
+    plane = replace(
+        _known(board, seen[0], camera),
+        pi=pi,
+        of_pose=max(1.0, squares / freedom) * of_pose,
+        by_camera=by_camera,
+        marks=even.uneven,
         pictures=len(seen),
         rms_px=float(np.sqrt(np.mean([one.rms_px**2 for one in seen]))),
     )
     return SoughtPlane(plane, notes)
 
 
+def plane_of_view(board: BoardOf, view: TargetView, camera: Camera) -> KnownPlane:
+    """Compute the plane of a board from one `view` of it, without what is printed on it.
+
+    Raises
+    ------
+    TargetNotFound
+        If its pose is not sure.
+    """
+    return _known(board, _posed(view, camera), camera)
+
+
+def _known(board: BoardOf, one: _Seen, camera: Camera) -> KnownPlane:
+    """The plane that one picture shows."""
+    plate = Plate(board.target, one.view, camera, board.margin_mm)
+    return KnownPlane(
+        board.name,
+        one.pi,
+        _outline(plate, one.pose, camera),
+        one.covariance,
+        _of_flatness(one.pose, plate.corners, board.tolerance.flatness_sd_mm),
+        one.by_camera,
+        None,
+        board.tolerance.size_sd,
+        scale_assumed=board.tolerance.scale_sd is None,
+        flatness_assumed=board.tolerance.flatness_mm is None,
+        print_of=board.print_of or board.name,
+        rms_px=one.rms_px,
+    )
+
+
 def _seen(board: BoardOf, picture: NDArray[Any], name: str, camera: Camera) -> _Seen:
     """The board in one picture; TargetNotFound if it is not seen, or its pose is not sure."""
-    view = detect(board.target, picture, name, camera, plane_only=True, region_px=board.region_px)
+    return _posed(detect(board.target, picture, name, camera, plane_only=True, region_px=board.region_px), camera)
+
+
+def _posed(view: TargetView, camera: Camera) -> _Seen:
+    """The plane of a view of a board; TargetNotFound if its pose is not sure."""
     found = estimate_pose(view, camera)
     if found.ambiguous:
         raise TargetNotFound(
-            Message("scan.board_ambiguous", "its points do not tell which of two ways it is tilted"), where=name
+            Message("scan.board_ambiguous", "its points do not tell which of two ways it is tilted"), where=view.name
         )
     kept = found.used
     view = replace(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,8 +49,11 @@ class CrossingMarks:
     with_fan: NDArray[np.bool_]
 
 
-def mark_crossings(sweep: TrackedSweep, lines: FanLines) -> CrossingMarks:
-    """Make marks of a sweep's crossings with the fan, of those with other sweeps it rests on, and of those left out."""
+def mark_crossings(sweep: TrackedSweep, lines: FanLines, boards: Sequence[str] = ()) -> CrossingMarks:
+    """Make marks of a sweep's crossings with the fan, of those with other sweeps it rests on, and of those left out.
+
+    Without a fan its points on known planes, the `boards` by name, stand in place of those with it.
+    """
     table = sweep.crossings
     place_in_plane = {int(row): k for k, row in enumerate(sweep.used)}
     uv: list[Array] = []
@@ -61,7 +64,7 @@ def mark_crossings(sweep: TrackedSweep, lines: FanLines) -> CrossingMarks:
         of_fan = bool(table.with_fan[row])
         if not of_fan and (sweep.plane is None or row not in place_in_plane):
             continue
-        how, why = _judged(sweep, row, place_in_plane.get(row), lines)
+        how, why = _judged(sweep, row, place_in_plane.get(row), lines, boards)
         uv.append(table.uv[row])
         status.append(how)
         reason.append(why)
@@ -80,12 +83,14 @@ def mark_crossings(sweep: TrackedSweep, lines: FanLines) -> CrossingMarks:
     )
 
 
-def _judged(sweep: TrackedSweep, row: int, k: int | None, lines: FanLines) -> tuple[CrossingStatus, Message]:
+def _judged(
+    sweep: TrackedSweep, row: int, k: int | None, lines: FanLines, boards: Sequence[str]
+) -> tuple[CrossingStatus, Message]:
     """Judge the crossing in `row`, with the reason; `k` is its place among those the plane rests on."""
     table = sweep.crossings
     good, weak, left_out = CrossingStatus
     other = Message("scan.earlier_sweep", "an earlier sweep")
-    if table.with_fan[row]:
+    if table.with_fan[row] and not table.on_plane[row]:
         line = lines.line[table.piece_b[row]]
         if line == UNASSIGNED:
             unclear = Message("scan.fan_light_unclear", "it is not clear which of the fan's lines this is")
@@ -96,6 +101,8 @@ def _judged(sweep: TrackedSweep, row: int, k: int | None, lines: FanLines) -> tu
     crosses = Message(
         "scan.crosses", "crosses {other} at {angle_deg:.0f}°", other=other, angle_deg=float(np.rad2deg(angle))
     )
+    if table.on_plane[row]:
+        crosses = Message("scan.lies_on_board", "lies on the board {board}", board=boards[-1 - table.piece_b[row]])
     if sweep.plane is None or k is None:
         return weak, Message(
             "scan.crossing_of_unlocated",

@@ -21,6 +21,7 @@ from core.model.arrays import Array
 from core.scan.features.crossings import CrossingWindow
 from core.scan.features.extraction import FrameFeatures, ReferenceFeatures
 from core.scan.features.frames import FEW_CROSSINGS
+from core.scan.known_planes.known_plane import Control
 from core.scan.network.sweep_plane import plane_condition
 from core.scan.preview.crossing_marks import CrossingMarks, mark_crossings
 from core.scan.preview.hints import HandState, HintLimits, hints_for
@@ -116,20 +117,23 @@ class Preview:
     """Preview of a scan, made from the features of its frames one after another.
 
     Built once per scan from the features of its reference picture
-    (:func:`core.scan.features.extraction.read_reference`). Not to be called from two threads at once.
+    (:func:`core.scan.features.extraction.read_reference`). Without a fan known planes locate the sweeps; beside one
+    they locate nothing here. Not to be called from two threads at once.
     """
 
     def __init__(
         self,
         reference: ReferenceFeatures,
         camera: Camera,
-        fan: Fan,
+        known: Fan | Control,
         options: PreviewOptions | None = None,
         lines: FanLines | None = None,
     ) -> None:
         self._options = options = options or PreviewOptions()
-        self._camera, self._fan, self._reference = camera, fan, reference
-        self._tracker = SweepTracker(reference.fan, camera, fan, options.window, lines=lines)
+        control = Control.of(known)
+        self._camera, self._fan, self._reference = camera, control.fan, reference
+        self._boards = () if control.fan.lines else tuple(plane.name for plane in control.planes)
+        self._tracker = SweepTracker(reference.fan, camera, control, options.window, lines=lines)
         self._thin_fan = [piece.select(slice(None, None, options.thin)) for piece in reference.fan]
         self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
         self._stripes: dict[int, StripeRays] = {}
@@ -188,7 +192,7 @@ class Preview:
         sigma = np.full(len(stripe), np.nan) if plane is None else stripe.depth(plane.pi, plane.covariance)[1]
         self._keep(stripe)
         points = self._points_of(features.index)
-        marks = mark_crossings(sweep, self._tracker.lines)
+        marks = mark_crossings(sweep, self._tracker.lines, self._boards)
         lines_met, condition = self._met(sweep)
         speed = movement_px(features.centrelines, self._before) / max(1, features.index - self._before_index)
         lasting = min(speed, self._speed_before)  # one jump, as from the end of a pass to the next, is no haste
@@ -208,7 +212,7 @@ class Preview:
             np.asarray(points.intensity, dtype=np.float64),
             np.asarray(points.uv, dtype=np.float64),
             self._hints(stripe, lines_met, sigma, lasting),
-            None if len(points) else _why_no_points(marks, located=plane is not None),
+            None if len(points) else self._why_no_points(marks, located=plane is not None),
         )
         return self._with_updates(preview)
 
@@ -255,11 +259,10 @@ class Preview:
         return replace(preview, renewed=whole, fan_lines=self.fan_lines if changed else None)
 
     def _met(self, sweep: TrackedSweep) -> tuple[int, float]:
-        """How many lines of the fan the sweep crosses, and the condition of those crossings."""
-        table = sweep.crossings
-        rows = np.flatnonzero(table.with_fan)
-        line = np.array([self._tracker.lines.line[piece] for piece in table.piece_b[rows]], dtype=np.int64)
-        rows, line = rows[line != UNASSIGNED], line[line != UNASSIGNED]
+        """How many lines of the fan, or known planes, the sweep crosses, and the condition of those crossings."""
+        line = self._tracker.line_of(sweep.crossings)
+        rows = np.flatnonzero(line != UNASSIGNED)
+        line = line[rows]
         condition = plane_condition(sweep.geometry.rays[rows]) if sweep.plane is None else sweep.plane.condition
         return len(np.unique(line)), condition
 
@@ -267,15 +270,25 @@ class Preview:
         known = sigma[np.isfinite(sigma)]
         state = HandState(
             lines_met,
-            self._fan.lines,
+            self._fan.lines or len(self._boards),
             float(np.median(known)) if len(known) else float("nan"),
             speed,
             self._reference.image_size[0],
             float(np.median(stripe.intensity)),
             self._reference.full_scale,
             float(np.mean(~stripe.usable)),
+            has_fan=self._fan.lines > 0,
         )
         return hints_for(state, self._options.hints)
+
+    def _why_no_points(self, marks: CrossingMarks, *, located: bool) -> Message:
+        if located:
+            return Message("scan.preview_uncertain", "its light plane is too uncertain for any point to be shown")
+        if not self._fan.lines:
+            return Message("scan.preview_off_boards", "its stripe lies on too few boards to be located")
+        if not len(marks.uv):
+            return Message("scan.preview_without_crossing", "its stripe crosses no line of the fan")
+        return FEW_CROSSINGS
 
     def _fan_clouds(self) -> list[PreviewCloud]:
         """The fan's own points, measured directly."""
@@ -295,11 +308,3 @@ def _depth_limits(fan: Sequence[PreviewCloud]) -> tuple[float, float]:
     """Nearest and farthest depth in mm of points that are shown, as `core.scan.reconstruct` cuts them."""
     depth = PreviewCloud.joined(fan).points[:, 2]
     return (NEAREST_SHARE * float(depth.min()), FARTHEST_SHARE * float(depth.max())) if len(depth) else (0.0, np.inf)
-
-
-def _why_no_points(marks: CrossingMarks, *, located: bool) -> Message:
-    if located:
-        return Message("scan.preview_uncertain", "its light plane is too uncertain for any point to be shown")
-    if not len(marks.uv):
-        return Message("scan.preview_without_crossing", "its stripe crosses no line of the fan")
-    return FEW_CROSSINGS

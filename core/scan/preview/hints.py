@@ -33,9 +33,9 @@ class HintLimits:
 class HandState:
     """What one frame shows of the hand-held laser for hints: lines crossed, σ, speed, brightness, saturation.
 
-    `lines_met` of the fan's `lines` are crossed; `sigma_mm` is the median over the frame's points, NaN when the sweep
-    is not located; `speed_px` since the frame before, NaN if not known; `width_px` the picture's; `strength` and
-    `full_scale` in grey levels; `saturated` share of the stripe's points.
+    `lines_met` of the fan's `lines` are crossed, of the known planes where it has none; `sigma_mm` is the median over
+    the frame's points, NaN when the sweep is not located; `speed_px` since the frame before, NaN if not known;
+    `width_px` the picture's; `strength` and `full_scale` in grey levels; `saturated` share of the stripe's points.
     """
 
     lines_met: int
@@ -46,6 +46,7 @@ class HandState:
     strength: float
     full_scale: float
     saturated: float
+    has_fan: bool = True
 
 
 def hints_for(state: HandState, limits: HintLimits) -> tuple[Message, ...]:
@@ -65,7 +66,11 @@ def hints_for(state: HandState, limits: HintLimits) -> tuple[Message, ...]:
         )
     if not state.sigma_mm <= limits.sigma_mm:
         if state.lines_met < min(3, state.lines):
-            hints.append(Message("scan.hint_cross_more", "Cross more of the fan."))
+            hints.append(
+                Message("scan.hint_cross_more", "Cross more of the fan.")
+                if state.has_fan
+                else Message("scan.hint_light_boards", "Let the line lie on all boards.")
+            )
         else:
             hints.append(Message("scan.hint_tilt", "Tilt the laser more."))
     return tuple(hints[:MOST_HINTS])

@@ -10,11 +10,11 @@ import numpy as np
 
 from core.image.exposure import stripe_exposure
 from core.image.stripes.centreline import Centreline
-from core.messages import Message, plural_message
+from core.messages import Message, plain, plural_message
 from core.model import Camera, Fan
 from core.scan.changed_section import ChangedSection, Section
 
-Name = Literal["reference", "lines", "exposure", "focus", "calibration", "check"]
+Name = Literal["reference", "lines", "exposure", "focus", "calibration", "check", "boards"]
 State = Literal["ok", "failed", "unknown"]
 
 FRESH_DAYS = 30.0
@@ -69,6 +69,8 @@ class Preflight:
         For how many days a calibration holds.
     section
         Whether the fan's stripes are skewed otherwise than in its calibration.
+    boards, boards_missing
+        Names of the boards that lie beside the part, and of those whose picture is not taken yet.
     """
 
     lines: int
@@ -82,10 +84,30 @@ class Preflight:
     stripe_px: float | None = None
     fresh_days: float = FRESH_DAYS
     section: ChangedSection | Section = Section.SAME
+    boards: tuple[str, ...] = ()
+    boards_missing: tuple[str, ...] = ()
 
     def checks(self) -> tuple[Check, ...]:
-        """Make the checks before a scan: the reference, three that rest on it (lines, exposure, focus), calibration."""
-        return self._reference(), self._lines(), self._exposure(), self._focus(), self._calibration()
+        """Make the checks before a scan: boards, reference, what rests on it (lines, exposure, focus), calibration."""
+        boards = (self._boards_seen(),) if self.boards else ()
+        if not self.lines:
+            return *boards, self._reference(), self._calibration()
+        return *boards, self._reference(), self._lines(), self._exposure(), self._focus(), self._calibration()
+
+    def _boards_seen(self) -> Check:
+        if self.boards_missing:
+            missing = Message(
+                "scan.check_boards_missing",
+                "Not seen yet: {boards:and}.",
+                boards=tuple(plain(name) for name in self.boards_missing),
+            )
+            return Check("boards", "unknown" if self.fan_lines is None else "failed", missing)
+        seen = Message(
+            "scan.check_boards",
+            "The boards are seen: {boards:and}.",
+            boards=tuple(plain(name) for name in self.boards),
+        )
+        return Check("boards", "ok", seen)
 
     def _reference(self) -> Check:
         if self.fan_lines is None:
@@ -172,7 +194,7 @@ class Preflight:
             return Check(
                 *failed, Message("scan.check_no_camera", "The camera is not calibrated: the scan would give no points.")
             )
-        if self.fan is None:
+        if self.fan is None and self.lines:
             return Check(
                 *failed, Message("scan.check_no_fan", "The fan is not calibrated: the scan would give no points.")
             )
@@ -189,20 +211,37 @@ class Preflight:
             )
             return Check(*failed, other_size)
         if self.age_s is None:
-            unknown = Message("scan.check_age_unknown", "It is not known when camera and fan were calibrated.")
+            unknown = (
+                Message("scan.check_age_unknown", "It is not known when camera and fan were calibrated.")
+                if self.lines
+                else Message("scan.check_camera_age_unknown", "It is not known when the camera was calibrated.")
+            )
             return Check("calibration", "unknown", unknown)
         days = self.age_s / _DAY_S
         if days > self.fresh_days:
             old = Message("scan.check_old", "The calibration is {n:.0f} days old: calibrate again.", n=days)
             return Check(*failed, old)
         if days < 1:
-            today = Message("scan.check_fresh", "Camera and fan were calibrated less than a day ago.")
+            today = (
+                Message("scan.check_fresh", "Camera and fan were calibrated less than a day ago.")
+                if self.lines
+                else Message("scan.check_camera_fresh", "The camera was calibrated less than a day ago.")
+            )
             return Check("calibration", "ok", today)
-        age = plural_message(
-            "scan.check_age",
-            "Camera and fan were calibrated {n} day ago.",
-            "Camera and fan were calibrated {n} days ago.",
-            n=round(days),
+        age = (
+            plural_message(
+                "scan.check_age",
+                "Camera and fan were calibrated {n} day ago.",
+                "Camera and fan were calibrated {n} days ago.",
+                n=round(days),
+            )
+            if self.lines
+            else plural_message(
+                "scan.check_camera_age",
+                "The camera was calibrated {n} day ago.",
+                "The camera was calibrated {n} days ago.",
+                n=round(days),
+            )
         )
         return Check("calibration", "ok", age)
 

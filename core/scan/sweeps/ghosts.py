@@ -220,6 +220,18 @@ def free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) ->
     return free
 
 
+def held_from_turning(crossings: CrossingTable, camera: Camera) -> NDArray[np.bool_]:
+    """Mask (M,) of the crossings of sweeps that meet more than one straight line.
+
+    A sheet known along one line alone is free to turn about it, and would fall onto the board that it is seen on.
+    """
+    if not len(crossings):
+        return np.zeros(0, dtype=np.bool_)
+    frames = sweeping_frames(crossings)
+    free = free_turns(by_sweep(crossings, frames), CrossingRays.of(crossings, camera), len(frames))
+    return ~np.isin(crossings.a, frames[free.any(axis=1)])
+
+
 def _variance(covariance: Array, one: Index, other: Index, rays: Array) -> Array:
     """Covariance (M,) of π·r of two sweeps each."""
     return np.asarray(np.einsum("mi,mij,mj->m", rays, covariance[one, :, other, :], rays))

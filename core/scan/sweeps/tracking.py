@@ -1,4 +1,4 @@
-"""Location of sweeps while they come, each by the fan and by a few sweeps before it, the anchors.
+"""Location of sweeps while they come, each by the fan or known planes and by a few sweeps before it, the anchors.
 
 The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a third
 more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.sweeps.one_sweep`). So
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.crossings.crossing import search_crossings
+from core.image.crossings.segments import CELLS
 from core.image.stripes.centreline import Centreline
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -28,9 +29,13 @@ from core.scan.features.crossings import (
     meetings_at,
     shaded,
 )
+from core.scan.known_planes.known_plane import Control
+from core.scan.known_planes.points_on_planes import SeenBoards
+from core.scan.network.datum import free_directions
 from core.scan.network.geometry import CrossingRays
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
-from core.scan.sweeps.locate import LocatedSweeps, choose_numbering, locate_together, numbered
+from core.scan.sweeps.ghosts import held_from_turning
+from core.scan.sweeps.locate import LocatedSweeps, choose_numbering, locate_together
 from core.scan.sweeps.one_sweep import KnownPlanes, OneSweep, judge_plane, locate_one
 
 # Chosen so that a preview is nearly as good as the network and a frame's work does not grow with the scan:
@@ -57,6 +62,8 @@ MOVEMENT_SAMPLES = 60
 class TrackedSweep:
     """One sweep with its plane and its crossings, with the fan (b = −1) and with anchors (b their frame).
 
+    Without a fan its points on known planes stand in place of those with it: on plane k `piece_b` is −1 − k.
+
     Anchors are the sweeps before and after it that are kept to be crossed. `used` (M,) are the rows of `crossings` that
     `plane` rests on; `left_out` the meetings that gave no crossing, each with about where in pixels, and why.
     """
@@ -78,24 +85,28 @@ class TrackedSweep:
 class SweepTracker:
     """Tracker that locates the sweeps of a scan one after another, as their frames come.
 
-    `lines` are the numbers of the fan's centrelines as far as they are settled; given at first, they stay.
+    `lines` are the numbers of the fan's centrelines as far as they are settled; given at first, they stay. Where the
+    fan has no lines the known planes of the `Control` locate the sweeps; beside a fan they locate nothing.
     """
 
     def __init__(
         self,
         fan_pieces: Sequence[Centreline],
         camera: Camera,
-        fan: Fan,
+        known: Fan | Control,
         window: CrossingWindow,
         most_anchors: int = MOST_ANCHORS,
         stride_px: float = ANCHOR_STRIDE_PX,
         lines: FanLines | None = None,
     ) -> None:
         self._fixed = shaded(fan_pieces, window)
-        self._camera, self._fan, self._window = camera, fan, window
-        self._numberings = (lines,) if lines else possible_fan_lines(fan_pieces, camera, fan)
+        control = Control.of(known)
+        self._camera, self._fan, self._window = camera, control.fan, window
+        self._control = control if not control.fan.lines else Control(control.fan)
+        self._boards = SeenBoards(self._control.planes, camera.image_size, camera) if self._control.planes else None
+        self._numberings = (lines,) if lines else possible_fan_lines(fan_pieces, camera, control.fan)
         self.lines: FanLines = self._numberings[0]
-        self._chosen_alike = SURE_AFTER if lines else 0
+        self._chosen_alike = SURE_AFTER if lines or not control.fan.lines else 0
         self._sweeps: dict[int, TrackedSweep] = {}
         self._anchors: dict[int, ShadedLines] = {}
         self._last_anchor: Sequence[Centreline] = ()
@@ -118,11 +129,14 @@ class SweepTracker:
         for anchor, others in self._anchors.items():
             rows.extend(meetings(lines, others, frame, anchor, window))
         table = crossing_table(rows, window)
+        if self._boards is not None:
+            on_planes, plane = self._boards.points([(frame, pieces)], window.half_length_px, CELLS)
+            table = table.followed_by(replace(on_planes, piece_b=-1 - plane))
         sweep = TrackedSweep(
             frame, table, CrossingRays.of(table, self._camera), search.left_out, None, np.zeros(0, np.int64)
         )
         self._sweeps[frame] = sweep = self._located(sweep)
-        if len(rows) and self._is_new(pieces):
+        if len(table) and self._is_new(pieces):
             self._tell_earlier_anchors(sweep)
             self._anchors[frame] = lines
             self._last_anchor = pieces
@@ -141,14 +155,36 @@ class SweepTracker:
             lines = choose_numbering(self._numberings, table, self._camera, self._fan)
             self._chosen_alike = self._chosen_alike + 1 if lines.line == self.lines.line else 0
             self.lines = lines
-        table, line = numbered(table, self.lines)
-        if not np.any(table.with_fan):
+        line = self.line_of(table)
+        known = ~table.with_fan | (line != UNASSIGNED)
+        if self._boards is not None:
+            known &= held_from_turning(table, self._camera)
+        table, line = table.select(known), line[known]
+        if not np.any(table.with_fan) or self._leaves_free(table, line):
             return False
-        self._adjusted = locate_together(table, line, self._camera, self._fan)
+        table = replace(table, piece_b=np.maximum(table.piece_b, -1))
+        self._adjusted = locate_together(table, line, self._camera, self._control)
         if len(self._sweeps) > MOST_RENEWED:
             return False
         self._outdated = set(self._sweeps)
         return True
+
+    def _leaves_free(self, table: CrossingTable, line: NDArray[np.int64]) -> bool:
+        """Whether there is no fan, and all light on known planes lies in one plane: it leaves the sweeps free."""
+        if self._boards is None:
+            return False
+        on_plane = table.on_plane
+        rays = self._camera.rays(table.uv[on_plane])
+        inverse_depths = np.einsum("mi,mi->m", rays, self._control.pis_at(line[on_plane], rays))
+        return free_directions(rays, inverse_depths) > 0
+
+    def line_of(self, table: CrossingTable) -> NDArray[np.int64]:
+        """Number (M,) of the fan's line or, after these, of the known plane of each crossing; else UNASSIGNED."""
+        numbers = np.array([*self.lines.line, UNASSIGNED], dtype=np.int64)
+        line = np.where(
+            table.with_fan, numbers[np.where(table.with_fan, np.maximum(table.piece_b, -1), -1)], UNASSIGNED
+        )
+        return np.where(table.on_plane, self._fan.lines - 1 - table.piece_b, line)
 
     def is_outdated(self, frame: int) -> bool:
         """Whether the sweep of `frame` is still located by an adjustment before the latest."""
@@ -201,7 +237,7 @@ class SweepTracker:
 
     def _located(self, sweep: TrackedSweep) -> TrackedSweep:
         """The sweep with its plane from what is known now."""
-        known, used = self._known(sweep.crossings)
+        known, used = self._known(sweep.crossings, sweep.geometry)
         crossings, geometry = sweep.crossings.select(used), sweep.geometry.select(used)
         adjusted = self._adjusted
         if adjusted is not None and sweep.frame in adjusted.frames:
@@ -210,13 +246,13 @@ class SweepTracker:
             covariance = adjusted.covariance[block, block]
             plane = judge_plane(adjusted.pis[place], covariance, crossings, geometry, known)
             return replace(sweep, plane=plane, used=used)
-        return replace(sweep, plane=locate_one(crossings, geometry, known) if len(used) >= 3 else None, used=used)
+        held = len(used) >= 3 and (self._boards is None or held_from_turning(_of_one(crossings), self._camera).all())
+        return replace(sweep, plane=locate_one(crossings, geometry, known) if held else None, used=used)
 
-    def _known(self, table: CrossingTable) -> tuple[KnownPlanes, NDArray[np.int64]]:
+    def _known(self, table: CrossingTable, geometry: CrossingRays) -> tuple[KnownPlanes, NDArray[np.int64]]:
         """The planes that crossings are with, and the rows of those crossings of which it is known."""
-        numbers = np.array([*self.lines.line, UNASSIGNED], dtype=np.int64)
-        line = np.where(table.with_fan, numbers[np.where(table.with_fan, table.piece_b, -1)], UNASSIGNED)
-        pis = self._fan.pis[np.maximum(line, 0)]
+        line = self.line_of(table)
+        pis = self._control.pis_at(np.maximum(line, 0), geometry.rays)
         sweep = np.full(len(table), -1, dtype=np.int64)
         covariance = np.zeros((0, 0))
         if self._adjusted is not None:
@@ -227,6 +263,11 @@ class SweepTracker:
             covariance = self._adjusted.covariance
         used = np.flatnonzero((line != UNASSIGNED) | (sweep >= 0))
         return KnownPlanes(pis[used], sweep[used], covariance), used
+
+
+def _of_one(crossings: CrossingTable) -> CrossingTable:
+    """The crossings of one sweep, as if all others were known: it alone could turn."""
+    return replace(crossings, b=np.full(len(crossings), -1, dtype=np.int64))
 
 
 def movement_px(now: Sequence[Centreline], before: Sequence[Centreline]) -> float:

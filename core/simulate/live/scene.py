@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.acquire.source import Lasers, Step
+from core.acquire.source import Lasers, Shown
 from core.errors import InputError
 from core.image.targets import Target
 from core.messages import Message
@@ -18,10 +18,11 @@ from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
 from core.simulate.blur import blurred
 from core.simulate.calibration import CAMERA_GREY, PLANE_GREY
+from core.simulate.effects.boards import NO_BOARDS, BoardsBeside
 from core.simulate.live.motion import HandPath, PlateMotion
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import Map, ray_map
-from core.simulate.recording import scan_of, scenario_rig
+from core.simulate.recording import BOARDS_GREY, scan_of, scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
@@ -59,7 +60,7 @@ class Moment:
     Parameters
     ----------
     step, lasers
-        The step, which says what is before the camera, and the lasers that are on.
+        What is before the camera, and the lasers that are on.
     time_s
         Since the step began.
     sweep_s
@@ -68,7 +69,7 @@ class Moment:
         Of the exposure; its noise and speckle follow from it.
     """
 
-    step: Step
+    step: Shown
     lasers: Lasers
     time_s: float
     sweep_s: float
@@ -104,7 +105,7 @@ class LiveScene:
             "planes": printed(plane_target or PLATES[scenario.plane_target]),
         }
         self._plates["check"] = self._plates["planes"]
-        self._motions: dict[Step, PlateMotion] = {
+        self._motions: dict[Shown, PlateMotion] = {
             "camera": self._camera_motion(),
             "planes": self._plane_motion(PLANE_RESTS, "live plane poses", PLANE_ROUNDS),
             "check": self._plane_motion(CHECK_RESTS, "live check poses"),
@@ -116,7 +117,7 @@ class LiveScene:
         self._view: _PlateView | None = None
         self._sensor = Sensor(self.rig.optics, scenario.bits, scenario.noise)
 
-    def precompute(self, step: Step) -> None:
+    def precompute(self, step: Shown) -> None:
         """Compute in advance what all pictures of a `step` share, so that each is rendered quickly."""
         width, height = self.rig.camera.image_size
         if self._rays is None:
@@ -124,22 +125,27 @@ class LiveScene:
             if self._scenario.noise > 0:
                 tile = NoiseTile((height, width), generator(self._scenario.seed, "live noise"))
                 self._sensor = replace(self._sensor, tile=tile)
-        if step == "scan" and self._stage is None:
+        if step == "boards" and self._scenario.boards == NO_BOARDS:  # the plate is laid beside the object
+            self._scenario, self._stage = replace(self._scenario, boards=BoardsBeside(plate=True)), None
+        if step in ("scan", "boards") and self._stage is None:
             self._stage = scan_of(self._scenario, self.rig)[0]
 
     def picture(self, moment: Moment, exposure: float = 1.0, gain: float = 1.0) -> Picture:
         """Render the picture (height, width) of `moment`; `exposure` and `gain` are factors on the usual ones."""
         self.precompute(moment.step)
         rng = generator(self._scenario.seed, f"live {moment.step}", moment.number)
-        light = self._scan_light(moment, rng) if moment.step == "scan" else self._plate_light(moment, rng)
+        of_scan = moment.step in ("scan", "boards")
+        light = self._scan_light(moment, rng) if of_scan else self._plate_light(moment, rng)
         return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
 
-    def motion(self, step: Step) -> PlateMotion | None:
+    def motion(self, step: Shown) -> PlateMotion | None:
         """Return the motion of the target in this step; None for a step without a target."""
         return self._motions.get(step)
 
     def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:
         assert self._stage is not None
+        if moment.step == "boards":
+            return self._stage.lit_by_room(BOARDS_GREY)
         if moment.lasers.hand:
             return self._stage.lit_by(self._hand.sheet(moment.sweep_s), rng=rng, fan=moment.lasers.fan)
         return self._stage.still if moment.lasers.fan else self._stage.room_light
@@ -184,7 +190,7 @@ class _PlateView:
     """
 
     def __init__(
-        self, key: tuple[Step, int | None], rig: Rig, rays: Map, pattern: Pattern, pose: Pose, grey: float
+        self, key: tuple[Shown, int | None], rig: Rig, rays: Map, pattern: Pattern, pose: Pose, grey: float
     ) -> None:
         self.key, self._rig, self._pose = key, rig, pose
         self._window = _window(rig, pose, pattern.outline)

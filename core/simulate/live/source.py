@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step
+from core.acquire.source import Capabilities, Frame, Lasers, Shown, SourceSettings
 from core.simulate.live.exposure_timer import ExposureTimer
 from core.simulate.live.motion import PlateMotion
 from core.simulate.live.scene import LiveScene, LiveTruth, Moment
@@ -34,9 +34,9 @@ _REMEMBERED = 240
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Step and lasers that are on, and since when, in s."""
+    """Shown and lasers that are on, and since when, in s."""
 
-    step: Step
+    step: Shown
     lasers: Lasers
     began_s: float = 0.0
     swept_s: float = 0.0
@@ -162,8 +162,8 @@ class SimulatedSource:
                 self._timer.set_rate(settings.rate_hz)
             self._ordered()
 
-    def prepare(self, step: Step) -> None:
-        """Put the target or the object of this `step` before the camera; its motion begins anew."""
+    def prepare(self, step: Shown) -> None:
+        """Put the target, the object or the boards of this `step` before the camera; its motion begins anew."""
         with self._changed:
             now = self._timer.now()
             self._state = _State(step, self._state.lasers, began_s=now, lit_s=now)
@@ -219,7 +219,7 @@ class SimulatedSource:
 
     def _expose(self) -> None:
         try:
-            rendered: set[Step] = set()
+            rendered: set[Shown] = set()
             while (task := self._next_exposure()) is not None:
                 moment = task.moment
                 picture = self._scene.picture(moment, task.exposure, task.gain)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -45,15 +46,15 @@ def boards_of(scenario: Scenario, plate: Target, table: Pose) -> tuple[Board, ..
     if beside.corner:
         for name, target, side in zip((NEAR, FAR), CORNER[beside.kind], (-1.0, 1.0), strict=True):
             pattern = scaled(printed(target), beside.larger)
-            boards.append(Board(name, pattern, _in_camera(table, _leaning(pattern.outline, beside.corner_deg, side))))
+            boards.append(Board(name, pattern, _in_camera(table, leaning(pattern.outline, beside.corner_deg, side))))
     if boards and beside.bent_mm:
         first = boards[0]
         boards[0] = Board(first.name, first.pattern, first.pose, first.bow_mm + beside.bent_mm)
     return tuple(Board(one.name, one.pattern.on(TABLE_ALBEDO), one.pose, one.bow_mm) for one in boards)
 
 
-def _leaning(outline: Array, corner_deg: float, side: float) -> Pose:
-    """A board with its lower (`side` +1) or upper edge (−1) in the corner's edge on the table, in the table's frame."""
+def leaning(outline: Array, corner_deg: float, side: float) -> Pose:
+    """Place a board with its lower (`side` +1) or upper edge (−1) in the corner's edge, in the table's frame."""
     lean = np.radians((180.0 - corner_deg) / 2)
     (_, top, _), (_, bottom, _) = outline.min(axis=0), outline.max(axis=0)
     edge = CORNER_BEGINS_MM + (bottom - top) * np.cos(lean)
@@ -70,18 +71,19 @@ def _in_camera(table: Pose, place: Pose) -> Pose:
 
 def stated_planes(scenario: Scenario, boards: tuple[Board, ...], camera: Camera) -> dict[str, KnownPlaneTarget]:
     """State what is printed on the boards, as rig.toml has it; the plate is the plane target and needs no table."""
-    targets = dict(zip((NEAR, FAR), CORNER[scenario.boards.kind], strict=True))
-    tolerance = TRUE if scenario.stated else BoardTolerance()
+    stated = corner_planes(scenario.boards.kind, TRUE if scenario.stated else BoardTolerance())
+    drawn = scenario.boards.kind == "rectangle"
     return {
-        board.name: KnownPlaneTarget(
-            targets[board.name],
-            tolerance,
-            print_of=NEAR if board.name == FAR else None,
-            region_px=_region(board, camera) if scenario.boards.kind == "rectangle" else None,
-        )
+        board.name: replace(stated[board.name], region_px=_region(board, camera) if drawn else None)
         for board in boards
-        if board.name in targets
+        if board.name in stated
     }
+
+
+def corner_planes(kind: str, tolerance: BoardTolerance) -> dict[str, KnownPlaneTarget]:
+    """State what is printed on the boards of a corner of this `kind`, and how true it is."""
+    near, far = CORNER[kind]
+    return {NEAR: KnownPlaneTarget(near, tolerance), FAR: KnownPlaneTarget(far, tolerance, print_of=NEAR)}
 
 
 def _region(board: Board, camera: Camera) -> tuple[tuple[float, float], ...]:

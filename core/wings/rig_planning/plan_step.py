@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from core.settings.options import Options
 from core.wings.rig_planning.plan_map import plan_map_png
 from core.wings.rig_planning.prediction.bounds import Bound, bounds_of
 from core.wings.rig_planning.prediction.changes import Effect, advice, compare
-from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.design import Design, PlanError
 from core.wings.rig_planning.prediction.from_rig import read_design, read_stated
 from core.wings.rig_planning.prediction.predict import Planner, Prediction, light_not_foretold
 
@@ -76,6 +76,12 @@ def plan(
     """
     design = read_design(rig)
     part, stability = read_stated(rig)
+    if bounds and not design.has_fan:
+        raise PlanError(
+            Message("plan.no_bounds_without_fan", "bounds are known for a rig with a fan only"),
+            where="--bounds",
+            todo=Message("plan.advice_without_bounds", "leave --bounds out, or add the table [laser_fan]"),
+        )
     planner = Planner(progress, (options or Options()).for_plan.solving(), part, stability)
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
@@ -110,7 +116,7 @@ def plan_values(result: PlanResult) -> dict[str, Any]:
     """Convert the prediction of a planned rig to the values of plan.json; lengths in mm, angles in degrees."""
     return {
         "version": __version__,
-        "design": {name: value for name, value in asdict(result.design).items() if not name.endswith("_target")},
+        "design": _design(result.design),
         "thickness": [_prediction(prediction) for prediction in result.predictions],
         "advice": None if result.advice is None else as_json(result.advice),
         "changes": [
@@ -125,6 +131,13 @@ def plan_values(result: PlanResult) -> dict[str, Any]:
         "bounds": [_bound(bound) for bound in result.bounds],
         "not_foretold": None if result.not_foretold is None else as_json(result.not_foretold),
     }
+
+
+def _design(design: Design) -> dict[str, Any]:
+    """The quantities of a design; of its boards, their names."""
+    left_out = ("camera_target", "plane_target", "boards")
+    values = {one.name: getattr(design, one.name) for one in fields(design) if one.name not in left_out}
+    return {**values, "boards": [name for name, _ in design.boards]}
 
 
 def _bound(bound: Bound) -> dict[str, Any]:

@@ -84,7 +84,11 @@ class LiveEnding(QObject):
             self._bench.notices.failed(error)
 
 
-def calibrated_s(results: Mapping[str, Done]) -> float | None:
-    """Return the time of the older of the two calibrations in s since 1970; None if one is missing."""
-    both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
-    return min(both) if len(both) == 2 else None
+def calibrated_s(results: Mapping[str, Done], *, has_fan: bool = True) -> float | None:
+    """Return the time of the older of the two calibrations in s since 1970; None if one is missing.
+
+    Without a fan there is but that of the camera.
+    """
+    needed = ("camera", "planes") if has_fan else ("camera",)
+    made = [results[step].at.timestamp() for step in needed if step in results]
+    return min(made) if len(made) == len(needed) else None

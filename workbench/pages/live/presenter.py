@@ -78,11 +78,11 @@ TWICE_MS = 250
 class LivePresenter(QObject):
     """Presenter of the live recordings of one step.
 
-    `calibration`, `check`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan
-    when a recording starts, what their last check said, why none can start now ("" if it can), the views that count in
-    the pictures new ones may be added to, and whether poses are taken with the laser on and off. Each `view` must be
-    answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
-    becomes the step's source by an undoable edit, then `ended` is emitted.
+    `calibration`, `check`, `cannot_start`, `there`, `boards` and `pairs` may be set by the page: what is known of
+    camera and fan when a recording starts, what their last check said, why none can start now ("" if it can), the views
+    that count in the pictures new ones may be added to, the boards beside the part, and whether poses are taken with
+    the laser on and off. Each `view` must be answered by one `shown()` when it is on the screen; no other comes before.
+    When a recording ends, its folder becomes the step's source by an undoable edit, then `ended` is emitted.
     """
 
     sounded = Signal()
@@ -139,6 +139,7 @@ class LivePresenter(QObject):
         self.check: Callable[[], InterimCheck | None] = lambda: None
         self.cannot_start: Callable[[], str] = lambda: ""
         self.there: Callable[[], tuple[TargetView, ...]] = tuple
+        self.boards: Callable[[], tuple[str, ...]] = tuple
         self.pairs = True
         self.adding = False
         self._source = self.settings.choice
@@ -446,9 +447,10 @@ class LivePresenter(QObject):
             auto=self._auto,
             pairs=self.pairs,
             there=self.there() if self.adding and self.can_add else (),
-            calibrated_s=calibrated_s(self.model.results),
+            calibrated_s=calibrated_s(self.model.results, has_fan=self.model.project.rig.has_fan),
             ending=self.settings.ending,
             check=self.check(),
+            boards=self.boards(),
             kept_planes=(project, self.model.project.accepted.planes) if self.model.project.accepted.planes else None,
         )
 

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QWidget
 from core.acquire.source import Step
 from core.errors import InputError
 from core.files.film import is_film
-from core.files.project.data import Project, ProjectFile, new_project
+from core.files.project.data import Project, ProjectFile, new_project, new_project_without_fan
 from core.files.project.folder import (
     OPENER,
     can_be_saved,
@@ -24,6 +24,7 @@ from core.files.project.folder import (
     read_project,
     rescues,
 )
+from core.files.recording.rig import Rig
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from core.simulate.sample import simulated_project
 from workbench.bench import Bench
@@ -40,6 +41,8 @@ from workbench.work import jobs
 from workbench.work.tasks import Task
 
 PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
+CORNER = "corner.pdf"
+"""Sheets to print of a project without a fan, beside its project.json."""
 
 
 class ProjectActions(QObject):
@@ -60,9 +63,42 @@ class ProjectActions(QObject):
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
     def new_project(self) -> None:
-        """Ask for a name and folder, and make an empty project for the user's own rig."""
-        own = partial(choose_own, self.bench.settings)
-        self._make(tr("New project"), tr("New project"), new_project, then=own)
+        """Ask for name, folder and lasers, and make an empty project for the user's own rig."""
+        ways = tr("Lasers"), (tr("Three-line laser and line laser"), tr("Line laser and two printed sheets"))
+        title = tr("New project")
+        answer = ask.ask_new_project(self._window, title, title, self.bench.settings.projects_folder, ways)
+        if answer is None:
+            return
+        name, folder, way = answer
+        self.bench.settings.projects_folder = folder
+        place = folder / ask.file_name(name)
+        if not way:
+            self._create(place, new_project, name, partial(choose_own, self.bench.settings))
+            return
+
+        def begun() -> None:
+            choose_own(self.bench.settings)
+            model, sheets = self.model, place / CORNER
+
+            def drawn(rig: Rig) -> None:
+                if model.folder == place:
+                    model.edit(tr("state the boards of the corner"), replace(model.project, rig=rig))
+                self.bench.notices.info(
+                    tr("Print both sheets of {file} at 100 % and join them to a corner behind the part.", file=sheets)
+                )
+
+            self.bench.run_quick(
+                self,
+                jobs.CORNER_SHEETS,
+                model.project.rig,
+                model.project.report.paper,
+                sheets,
+                label=tr("Drawing the sheets to print"),
+                on_done=drawn,
+                offers={},
+            )
+
+        self._create(place, new_project_without_fan, name, begun)
 
     def choose_project(self) -> None:
         """Ask for the folder of a project, and open the project."""
@@ -179,11 +215,26 @@ class ProjectActions(QObject):
 
     def try_simulated(self) -> None:
         """Make a new project whose live source is the simulated rig."""
+        self._try_simulated(simulated_project)
+
+    def try_simulated_without_fan(self) -> None:
+        """Make a new project whose live source is the simulated rig with a line laser and two printed boards."""
+        self._try_simulated(partial(simulated_project, has_fan=False))
+
+    def _try_simulated(self, project: Callable[[str], Project]) -> None:
         choose_simulated(self.bench.settings)
         folder = free_folder(self.bench.settings.projects_folder, tr("Simulated rig"))
-        self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
+        self._create(folder, project, folder.name, then=lambda: self.go_to.emit("camera"))
 
     def begin_first_measurement(self) -> None:
+        """Begin the first measurement by a three-line laser and a line laser."""
+        self._begin_first_measurement(has_fan=True)
+
+    def begin_first_measurement_without_fan(self) -> None:
+        """Begin the first measurement by a line laser and two printed boards."""
+        self._begin_first_measurement(has_fan=False)
+
+    def _begin_first_measurement(self, *, has_fan: bool) -> None:
         """Make a new project of the sample's pictures with nothing measured, for the step-by-step instructions.
 
         If another project is opened while the pictures are rendered, it stays open.
@@ -206,6 +257,7 @@ class ProjectActions(QObject):
             self,
             jobs.SAMPLE_TO_MEASURE,
             printed(),
+            has_fan,
             label=tr("Preparing the first measurement"),
             on_done=make,
             on_failed=self._prepared,

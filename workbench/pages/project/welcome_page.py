@@ -101,7 +101,12 @@ class WelcomePage(QWidget):
         self.first.setIcon(icon("mdi6.school-outline"))
         self.first.setToolTip(tr("Measure the pictures of a gauge block; each step is explained and waits for you."))
         self.first.clicked.connect(projects.begin_first_measurement)
-        head = in_row((_with_mark(title), 1), self.first)
+        self.first_without_fan = QPushButton(tr("… with a line laser and two sheets"))
+        self.first_without_fan.setToolTip(
+            tr("The same block without a three-line laser: two printed boards behind it stand in for that.")
+        )
+        self.first_without_fan.clicked.connect(projects.begin_first_measurement_without_fan)
+        head = in_row((_with_mark(title), 1), self.first, self.first_without_fan)
         inside = in_column(head, claim, on=card, margins=(36, 28, 36, 28))
         inside.addSpacing(18)
         columns = QHBoxLayout()

@@ -39,6 +39,7 @@ class Situation(NamedTuple):
     paused: bool
     detail: ScanDetail | None
     checks: tuple[Check, ...]
+    has_fan: bool = True
 
 
 def guidance(now: Situation) -> Guidance:
@@ -74,6 +75,10 @@ def _said(now: Situation) -> tuple[Level, str]:
     if now.detail is None:
         return "", now.state
     match now.detail.stage:
+        case "boards":
+            return "", tr("Taking the boards: all lasers are off, light falls on the boards, nothing moves.")
+        case "reference" if not now.has_fan:
+            return "", tr("Taking the reference: all lasers are off, nothing moves.")
         case "reference":
             return "", tr("Taking the reference: only the three-line laser is on, nothing moves.")
         case "ready":

@@ -17,7 +17,7 @@ from workbench.pages.scan.bar import FrameBar
 from workbench.pages.scan.check_card import CheckCard
 from workbench.pages.scan.cloud import ScanCloud
 from workbench.pages.scan.guide import GuideBand
-from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
+from workbench.pages.scan.panels import PlateQuestion, ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan.picture import ScanPicture, View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.profiles import ProfilesPanel
@@ -32,7 +32,7 @@ from workbench.views.image.side_by_side import SideBySide
 from workbench.views.lists.checks_card import ChecksCard
 from workbench.views.lists.view_list import ListRow, ViewList
 
-STAGES_BEFORE = ("reference", "ready")
+STAGES_BEFORE = ("boards", "reference", "ready")
 """Stages of a live scan in which nothing is recorded yet; later only those checks are shown that failed."""
 
 
@@ -74,6 +74,8 @@ class ScanPage(StepPage):
 
         self.card = ScanCard(presenter)
         self.add_to_side(self.card)
+        self.plate = PlateQuestion(presenter)
+        self.add_to_side(self.plate)
         self.check = CheckCard(presenter.check, presenter.artefacts, presenter.check_live)
         self.add_to_side(self.check)
         self.checks = ChecksCard()
@@ -108,6 +110,7 @@ class ScanPage(StepPage):
             self.guide.refresh()
         self.card.refresh()
         self.card.setVisible(not live)
+        self.plate.setVisible(p.asks_for_plate and self.source.mode == "live")
         check_is_due = p.check_is_due and self.source.mode == "live"
         self.check.setVisible(p.has_fan)
         self.check.refresh(wanted=check_is_due)

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from core.messages import capital
 from core.pipeline.live.events import ScanDetail
@@ -25,7 +25,7 @@ from workbench.pages.whole import EVERYTHING
 from workbench.pages.words import count, show_facts, sigma
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import alarm, heading, in_column, muted, set_notes, set_text
+from workbench.views.layouts import STRETCH, alarm, heading, in_column, in_row, muted, set_notes, set_text
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
@@ -108,10 +108,28 @@ class ScanCard(StageCard):
         p = self._presenter
         begin = tr("Sweep the part with a live source, or choose the folder of a recording.")
         if not p.has_fan:
-            begin = tr(words.NO_LIVE_SCAN)
+            begin = tr(words.SWEEP_BEFORE_BOARDS if p.boards else words.NO_LIVE_SCAN)
         if p.calibrated:
             return begin
         return tr("{begin} It can be measured once its calibrations are accepted.", begin=begin)
+
+
+class PlateQuestion(QFrame):
+    """Question, asked once in a project, whether the plate is left beside the part, where it checks every scan."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        question = muted(tr("Leave the plate beside the part? It checks every scan."))
+        question.setToolTip(
+            tr("The plate of the laser planes lies still beside the part, where the hand-held line crosses it. Before "
+               "each live scan its picture is taken. It moves no value; it tells when camera or laser have changed.")
+        )  # fmt: skip
+        self.yes, self.no = QPushButton(tr("Yes")), QPushButton(tr("No"))
+        self.yes.clicked.connect(lambda: presenter.leave_plate_beside(True))
+        self.no.clicked.connect(lambda: presenter.leave_plate_beside(False))
+        in_column(question, in_row(self.yes, self.no, STRETCH), on=self, margins=(10, 8, 10, 8), spacing=6)
+        self.hide()
 
 
 class SettingsPanel(QWidget):

@@ -142,7 +142,8 @@ class ScanPicture(QWidget):
 
     def _empty(self) -> None:
         how = tr("Record a scan with a live source, or choose the folder of a recording (or drop one here).")
-        self._clear(how if self._presenter.has_fan else tr(words.NO_LIVE_SCAN), self._next_action())
+        can = self._presenter.has_fan or self._presenter.boards
+        self._clear(how if can else tr(words.NO_LIVE_SCAN), self._next_action())
 
     def _clear(self, message: str, next_action: NextAction | None = None) -> None:
         self._shown = self._fan = None

@@ -12,7 +12,7 @@ from core.calibrate.sitting import Acquisition, hours_of_sitting
 from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import changed, inputs_of
-from core.files.recording.recording_set import CHECK
+from core.files.recording.recording_set import CHECK, boards_beside
 from core.image.stripes.stripe import StripeSettings
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.pipeline.live.rig_check import rig_check
@@ -51,6 +51,7 @@ class ScanPresenter(StepPresenter):
         self.live = LivePresenter(bench, "scan", self)
         self.live.calibration = lambda: (self.work.camera, self.work.fan)
         self.live.cannot_start = self._cannot_record
+        self.live.boards = lambda: self.boards
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
         self.check = RigCheck(bench, self)
@@ -95,6 +96,7 @@ class ScanPresenter(StepPresenter):
         accepted, state, work = self.project.accepted, self.state.state, self.work
         return Facts(
             has_fan=self.has_fan,
+            boards=bool(self.boards),
             live=self.live.running,
             check_live=self.check_live.running,
             measuring=self.run.measuring,
@@ -121,7 +123,16 @@ class ScanPresenter(StepPresenter):
         """What the page tells the hand now: light, sentence and button."""
         live = self.live
         return guidance(
-            Situation(live.state_text(), live.gone, live.stopping, live.question, live.paused, self._seen, live.checks)
+            Situation(
+                live.state_text(),
+                live.gone,
+                live.stopping,
+                live.question,
+                live.paused,
+                self._seen,
+                live.checks,
+                has_fan=self.has_fan,
+            )
         )
 
     @property
@@ -170,6 +181,22 @@ class ScanPresenter(StepPresenter):
     def has_fan(self) -> bool:
         """Whether the rig has a fan that is calibrated and checked, and whose lines measure alone."""
         return self.project.rig.has_fan
+
+    @property
+    def boards(self) -> tuple[str, ...]:
+        """Names of the boards that lie beside the part in a live scan."""
+        return boards_beside(self.project.rig, plate=self.project.plate_beside is True)
+
+    @property
+    def asks_for_plate(self) -> bool:
+        """Whether it is to be asked if the plate is left beside the part: once, where nothing lies there yet."""
+        asked = self.project.plate_beside is not None or bool(self.boards)
+        return self.has_fan and not asked and not self.model.is_read_only and self.stage is not Stage.LIVE
+
+    def leave_plate_beside(self, on: bool) -> None:
+        """Answer whether the plate is left beside the part; undoable."""
+        label = tr("leave the plate beside the part") if on else tr("leave no plate beside the part")
+        self.model.edit(label, replace(self.project, plate_beside=on))
 
     @property
     def calibrated(self) -> bool:
@@ -376,7 +403,8 @@ class ScanPresenter(StepPresenter):
         return {
             WhyNot.NOTHING: "",
             WhyNot.MEASURING: tr("The scan is being measured; wait for it, or cancel it."),
-            WhyNot.NO_FAN: tr(words.NO_LIVE_SCAN),
+            WhyNot.NO_BOARDS: tr(words.NO_LIVE_SCAN),
+            WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
             WhyNot.CHECK_LIVE: tr("Pictures of the check are being taken."),
             WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
         }[disabled_reasons(self._facts()).record]

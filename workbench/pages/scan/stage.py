@@ -43,7 +43,7 @@ class WhyNot(StrEnum):
     NO_FRAMES = "no frames"
     ALL_LEFT_OUT = "all left out"
     CHECK_LIVE = "check live"
-    NO_FAN = "no fan"
+    NO_BOARDS = "no boards"
     READ_ONLY = "read-only"
     READING_CALIBRATIONS = "reading calibrations"
 
@@ -61,7 +61,9 @@ class Facts(NamedTuple):
     """Facts from which stage and buttons follow."""
 
     has_fan: bool
-    """The rig has a fan, by which a live scan is previewed."""
+    """The rig has a fan; else boards beside the part stand in for it."""
+    boards: bool
+    """The rig states boards beside the part."""
     live: bool
     """A scan is being recorded."""
     check_live: bool
@@ -128,7 +130,8 @@ def _measure(facts: Facts) -> str:
 
 def _record(facts: Facts) -> str:
     return first(
-        why(not facts.has_fan, WhyNot.NO_FAN),
+        why(not facts.has_fan and not facts.boards, WhyNot.NO_BOARDS),
+        why(not facts.has_fan and not facts.camera, WhyNot.NO_CAMERA),
         why(facts.measuring, WhyNot.MEASURING),
         why(facts.check_live, WhyNot.CHECK_LIVE),
         why(not facts.calibrations_read, WhyNot.READING_CALIBRATIONS),

@@ -14,8 +14,13 @@ from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import named, sentence, text_of, tr
 from workbench.pages.words import count, percent, sigma
 
-NO_LIVE_SCAN = label("A live scan needs a fan; choose the folder of a recording with known planes.")
-"""What to do where the rig has no fan."""
+NO_LIVE_SCAN = label(
+    "There is neither a fan nor a board that is stated: state boards in rig.toml ([known_planes]), or choose the "
+    "folder of a recording with them."
+)
+"""What to do where nothing is stated by which a sweep could be located."""
+SWEEP_BEFORE_BOARDS = label("Sweep the part before its boards with a live source, or choose the folder of a recording.")
+"""How to begin where boards stand in for a fan."""
 
 
 def facts(look: ShownScan | None) -> tuple[Fact, ...]:

@@ -84,4 +84,5 @@ class ChecksCard(QFrame):
             "focus": tr("Focus"),
             "calibration": tr("Calibration"),
             "check": tr("Check"),
+            "boards": tr("Boards"),
         }

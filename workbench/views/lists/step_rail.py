@@ -32,6 +32,7 @@ class StepRail(QFrame):
         self._states: dict[str, str] = dict.fromkeys((name for name, _, _ in steps), "todo")
         self._buttons: dict[str, QToolButton] = {}
         self._badges: dict[str, IconLabel] = {}
+        self._rows: dict[str, QWidget] = {}
         group = QButtonGroup(self)
         layout = in_column(on=self, margins=(6, 10, 6, 10), spacing=4)
         for number, (name, title, symbol) in enumerate(steps, start=1):
@@ -46,7 +47,10 @@ class StepRail(QFrame):
             button.setMinimumHeight(36)
             group.addButton(button)
             badge = IconLabel(16)
-            layout.addLayout(in_row((button, 1), badge, spacing=4))
+            row = QWidget()
+            in_row((button, 1), badge, on=row, spacing=4)
+            layout.addWidget(row)
+            self._rows[name] = row
             self._buttons[name], self._badges[name] = button, badge
         layout.addStretch(1)
         self._titles = {name: title for name, title, _ in steps}
@@ -72,12 +76,20 @@ class StepRail(QFrame):
         self._buttons[name].setChecked(True)
 
     def set_states(self, states: Mapping[str, tuple[str, str]]) -> None:
-        """Set the state of each step, a key of BADGES, and the sentence on it, by the step's name."""
+        """Set the state of each step, a key of BADGES, and the sentence on it, by the step's name.
+
+        What is not needed is not shown; the others are numbered without it.
+        """
         others = [name for name, (state, _) in states.items() if state != self._states[name]]
         for name, (state, sentence) in states.items():
             self._states[name] = state
             self._badges[name].setToolTip(sentence)
             self._buttons[name].setAccessibleDescription(sentence)
+        needed = [name for name in self._buttons if self._states[name] != "not needed"]
+        for name, row in self._rows.items():
+            row.setVisible(name in needed)
+        for number, name in enumerate(needed, start=1):
+            self._buttons[name].setText(f"{number}  {self._titles[name]}")
         self._set_tips()
         self._show_badges(others)
 

@@ -6,6 +6,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
@@ -93,10 +96,17 @@ def _sought(pictures: PictureReader, board: PlanePictures, camera: Camera) -> So
         picture = pictures.read_board(path)
         check_size(path, picture.shape, camera)
         read.append((pictures.recording_set.name_of(path), picture))
+    return seek_board(board, read, camera, pictures.recording_set.rig)
+
+
+def seek_board(
+    board: PlanePictures, pictures: Sequence[tuple[str, NDArray[Any]]], camera: Camera, rig: Rig
+) -> SoughtPlane:
+    """Find the plane of a `board` of the `rig` in `pictures`, each a name and grey levels (H, W), at its warmth."""
     stated = board.stated
     tolerance: BoardTolerance = stated.board
     of = BoardOf(board.name, board.target, tolerance, stated.margin_mm, board.print_of, stated.region_px)
-    return _at_its_warmth(seek_plane(of, read, camera), stated.temperature, pictures.recording_set.rig.part.target)
+    return _at_its_warmth(seek_plane(of, pictures, camera), stated.temperature, rig.part.target)
 
 
 def _at_its_warmth(sought: SoughtPlane, own: TargetTemperature, standard: TargetTemperature) -> SoughtPlane:

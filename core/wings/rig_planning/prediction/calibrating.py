@@ -54,7 +54,7 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
     """
     camera, target = design.camera(), design.camera_target
     noise = generator(seed, "corner noise")
-    views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(view_poses(design, seed))]
+    views = [view_of(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(view_poses(design, seed))]
     return calibrate_camera(views, camera.image_size, CameraOptions(skew=True, k3=False), progress)
 
 
@@ -106,7 +106,7 @@ def _plates_seen(design: Design, seed: int, count: int, what: str) -> list[PoseF
     noise = generator(seed, what)
     features = []
     for number, (pose, pieces) in enumerate(plates_under_fan(design, seed, count)):
-        view = _view(f"pose{number:02d}", true, pose, target, noise)
+        view = view_of(f"pose{number:02d}", true, pose, target, noise)
         tried = stripes.tried(pieces, WHITE * float(room_shade(pose, PLANE_GREY)))  # each pose has its own sharpness
         features.append(_features(view, tuple(tried.centreline(piece, noise) for piece in pieces), true))
     return features
@@ -124,8 +124,8 @@ def plates_under_fan(design: Design, seed: int, count: int) -> list[tuple[Pose, 
             [
                 piece
                 for sheet in fan_sheets(rig, pose.translation)
-                for piece in _on_plate(
-                    lit_lines(sheet, (_face(plate, pose),), nothing, rig.camera, rig.blur_px, filter_px), plate, pose
+                for piece in on_plate(
+                    lit_lines(sheet, (face_of(plate, pose),), nothing, rig.camera, rig.blur_px, filter_px), plate, pose
                 )
             ],
         )
@@ -146,8 +146,8 @@ def _features(view: TargetView, centrelines: tuple[Centreline, ...], camera: Cam
     return PoseFeatures(view.name, view, centrelines, dark)
 
 
-def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.Generator) -> TargetView:
-    """What the detector would find of a target; what it states is a little more than the errors drawn."""
+def view_of(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.Generator) -> TargetView:
+    """Simulate what the detector would find of a target; what it states is a little more than the errors drawn."""
     uv = camera.project_pose(pose, target.points)
     if isinstance(target, BlackSquare):
         covariance = square_covariance(uv, EDGE_PX)
@@ -177,12 +177,13 @@ def square_covariance(uv: Array, edge_px: float) -> Array:
     return np.asarray(by_ends @ ends @ by_ends.T, dtype=np.float64)
 
 
-def _face(plate: Pattern, pose: Pose) -> FlatFace:
+def face_of(plate: Pattern, pose: Pose) -> FlatFace:
+    """Make the face of a printed plate in its `pose`."""
     return FlatFace(pose.apply(plate.outline), -pose.rotation[:, 2], WHITE)
 
 
-def _on_plate(lines: tuple[LitLine, ...], plate: Pattern, pose: Pose) -> list[LitLine]:
-    """The stretches of stripes on the light parts of a printed plate."""
+def on_plate(lines: tuple[LitLine, ...], plate: Pattern, pose: Pose) -> list[LitLine]:
+    """Select the stretches of stripes on the light parts of a printed plate."""
     kept = []
     for line in lines:
         margin = int(np.ceil(EDGE_IN_WIDTHS * float(np.median(line.width))))

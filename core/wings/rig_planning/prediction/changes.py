@@ -85,23 +85,27 @@ _MORE_CHECKS = Change(
     lambda design: _with(design, "check_poses", design.check_poses + USUAL_CHECK),
 )
 
-CHANGES = (
+OF_FAN = (
     _scaled("baseline_mm", 1.2, Message("plan.change_baseline_up", "baseline of the fan 20 % longer"), _mm),
     _scaled("baseline_mm", 0.8, Message("plan.change_baseline_down", "baseline of the fan 20 % shorter"), _mm),
     _scaled("angle_deg", 1.4, Message("plan.change_angle_up", "angle between the fan's planes 40 % wider"), _degrees),
     _scaled(
         "angle_deg", 0.7, Message("plan.change_angle_down", "angle between the fan's planes 30 % narrower"), _degrees
     ),
+    _twice("poses", Message("plan.change_poses", "poses of the plane target doubled")),
+    _MORE_CHECKS,
+)
+"""Changes of a fan, its calibration and its check."""
+OF_ALL = (
     _scaled("focal_mm", 1.2, Message("plan.change_focal_up", "focal length 20 % longer"), _mm),
     _scaled("focal_mm", 0.8, Message("plan.change_focal_down", "focal length 20 % shorter"), _mm),
     _scaled("hand_baseline_mm", 1.2, Message("plan.change_hand_up", "hand-held laser 20 % farther aside"), _mm),
-    _twice("poses", Message("plan.change_poses", "poses of the plane target doubled")),
     _twice("views", Message("plan.change_views", "views of the camera target doubled")),
     _twice("sweeps", Message("plan.change_sweeps", "sweeps doubled")),
-    _MORE_CHECKS,
     _scaled("speckle", 0.5, Message("plan.change_speckle", "speckle halved"), _contrast),
     _scaled("stripe_grey", 1.5, Message("plan.change_brightness", "stripes half as bright again"), _grey),
 )
+CHANGES = (*OF_FAN, *OF_ALL)
 """The steps that are tried: as much as one would change on a rig that stands, and within what most parts allow."""
 
 
@@ -111,16 +115,18 @@ def compare(
     base: Prediction,
     *,
     scans: int = 1,
-    changes: tuple[Change, ...] = CHANGES,
+    changes: tuple[Change, ...] | None = None,
     progress: Progress = silent,
 ) -> tuple[Effect, ...]:
     """Predict U of the thickness after each of `changes` to the rig, and sort them by that U, the smallest first.
 
+    None: all that there are for such a rig.
     Plan and change are compared on the same `scans` first scans of the plan, so that luck does not decide.
     """
     before = planner.predict(design, base.height_mm, scans)
     effects = []
-    for change in steps(changes, progress, "changes of the rig", len(changes)):
+    tried = changes if changes is not None else CHANGES if design.has_fan else OF_ALL
+    for change in steps(tried, progress, "changes of the rig", len(tried)):
         try:
             after = planner.predict(change.make(design), base.height_mm, scans)
         except InputError as error:

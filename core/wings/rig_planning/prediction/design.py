@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
+from core.files.recording.rig import KnownPlaneTarget
 from core.image.targets import BlackSquare, Checkerboard, Target
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
@@ -57,6 +58,8 @@ class Range(NamedTuple):
     unit: str = ""
 
 
+CORNER_BOARDS = 2
+"""Boards that stand in for a fan."""
 USUAL_CHECK = 3
 """Pictures of a check on the day, as the manual advises."""
 
@@ -78,6 +81,7 @@ RANGES: Mapping[str, Range] = {
     "electrons_per_grey": Range(0.5, 10_000.0, "electrons"),
     "read_noise_grey": Range(0.0, 50.0, "grey levels"),
     "ambient_grey": Range(0.0, 250.0, "grey levels"),
+    "corner_deg": Range(60.0, 170.0, "degrees"),
 }
 """What each quantity may be: wider than any rig that was built, so that only slips are refused."""
 
@@ -119,6 +123,9 @@ class Design:
         Of the camera; and a white surface's grey level in the room's light.
     camera_target, plane_target
         The plates the rig is calibrated with.
+    boards, corner_deg
+        Boards by name that stand in for a fan, two that meet in a corner behind the part, and the angle between them;
+        none: there is a fan.
 
     Raises
     ------
@@ -148,6 +155,8 @@ class Design:
     ambient_grey: float = 45.0
     camera_target: Target = field(default=Checkerboard(17, 12, 10.0))
     plane_target: Target = field(default=BlackSquare(60.0))
+    boards: tuple[tuple[str, KnownPlaneTarget], ...] = ()
+    corner_deg: float = 90.0
 
     def __post_init__(self) -> None:
         for name, (low, high, unit) in RANGES.items():
@@ -179,6 +188,16 @@ class Design:
                     list(values),
                     Message("plan.range_each", "each must be from {low:g} to {high:g}", low=low, high=high),
                 )
+        if self.boards and len(self.boards) != CORNER_BOARDS:
+            raise PlanError(
+                Message(
+                    "plan.boards_of_corner",
+                    "{n} boards are stated and no fan: of such a rig a corner of two boards is planned",
+                    n=len(self.boards),
+                ),
+                where="[known_planes]",
+                todo=Message("plan.advice_two_boards", "state two boards, or the fan"),
+            )
         if max(self.heights_mm) > 0.6 * self.distance_mm:
             raise _impossible(
                 "heights_mm",
@@ -189,6 +208,11 @@ class Design:
                     distance_mm=self.distance_mm,
                 ),
             )
+
+    @property
+    def has_fan(self) -> bool:
+        """Whether the rig has a fan, and no boards stand in for it."""
+        return not self.boards
 
     @property
     def focal_px(self) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 from core.calibrate.change import Stability
 from core.calibrate.drift import NO_DRIFT, USUAL_KELVINS, Air, apart, stability_after
 from core.errors import InputError, WrongValue
-from core.files.recording.rig import RigTables, TargetTable, read_rig_tables, stated_part
+from core.files.recording.rig import RigTables, TargetTable, known_planes_of, read_rig_tables, stated_part
 from core.image.targets import Target
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
@@ -60,6 +60,8 @@ def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:
         given["lines"] = tables.laser_fan.lines
         if tables.laser_fan.angle_deg is not None:
             given["angle_deg"] = tables.laser_fan.angle_deg
+    elif tables.known_planes:
+        given["boards"] = tuple(known_planes_of(tables, path).items())
     for name, table in (("camera_target", tables.camera_target), ("plane_target", tables.plane_target)):
         if table is not None:
             given[name] = _target(table, name, path)

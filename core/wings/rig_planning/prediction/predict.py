@@ -15,9 +15,9 @@ from typing import TypeVar
 import numpy as np
 
 from core.calibrate.change import STABLE, Stability, changes, judge
-from core.calibrate.deviations import Deviation, calibration_deviations
+from core.calibrate.deviations import Deviation
 from core.calibrate.fan.interim_check import check_poses
-from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.results import NO_FAN
 from core.errors import InputError
 from core.inspect.gauge import adjusted, measure_gauge
 from core.inspect.plan.temperature import temperature_contributions, temperature_of
@@ -27,14 +27,17 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.messages import Message
 from core.model.arrays import Array
+from core.pipeline.steps.workspace import Calibration
 from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
 from core.scan.features.extraction import ScanFeatures
+from core.scan.known_planes.plane_deviations import followed_by_planes, own_deviations
 from core.scan.method import ReconstructOptions
 from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 from core.scan.surface.cloud import Cloud
+from core.wings.rig_planning.prediction.boards import plan_planes
 from core.wings.rig_planning.prediction.calibrating import plan_camera, plan_check, plan_fan
 from core.wings.rig_planning.prediction.design import Design, PlanError
 from core.wings.rig_planning.prediction.scanning import plan_scan
@@ -148,11 +151,12 @@ class Planner:
 
     def _draw(self, design: Design, height_mm: float, seed: int) -> tuple[GaugeResult, Cloud]:
         told = StepProgress(self.progress)
-        camera, fan = self._calibrations(design, seed)
+        calibration = self._calibration(design, seed)
+        camera, control = calibration.camera.camera, calibration.control
         features = self._features(design, height_mm, seed)
-        scan = reconstruct(features, camera.camera, fan.fan, self.solving, told.within_step)
-        deviations = self._deviations(design, seed, (camera, fan), features, scan)
-        common = solve_common(scan, camera.camera, fan.fan, deviations, progress=told.within_step)
+        scan = reconstruct(features, camera, control.fan, self.solving, told.within_step, planes=control.planes)
+        deviations = self._deviations(design, seed, calibration, scan)
+        common = solve_common(scan, camera, control, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle, scan.pis.shape[1])
         gauge = measure_gauge(cloud, errors=errors, progress=told.within_step)
@@ -170,34 +174,36 @@ class Planner:
             )
         return gauge, cloud
 
-    def _calibrations(self, design: Design, seed: int) -> tuple[CameraCalibration, FanCalibration]:
+    def _calibration(self, design: Design, seed: int) -> Calibration:
         told = StepProgress(self.progress)
         known = replace(design, poses=Design().poses, **_SCAN_ONLY)
         camera = self._remembered(("camera", known, seed), lambda: plan_camera(known, seed, told.within_step))
+        if not design.has_fan:
+            return Calibration(camera, NO_FAN).with_planes(plan_planes(design, camera.camera, seed))
         whole = replace(design, **_SCAN_ONLY)
-        return camera, self._remembered(
-            ("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.within_step)
-        )
+        fan = self._remembered(("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.within_step))
+        return Calibration(camera, fan)
 
     def _deviations(
         self,
         design: Design,
         seed: int,
-        calibrations: tuple[CameraCalibration, FanCalibration],
-        features: ScanFeatures,
+        calibration: Calibration,
         scan: ScanResult,
     ) -> tuple[Deviation, ...]:
         """Those of the calibrations, and what may have changed since, as far as scan and check do not exclude it."""
-        camera, fan = calibrations
-        deviations = calibration_deviations(camera, fan)
+        camera, fan, control = calibration.camera.camera, calibration.fan, calibration.control
+        own = tuple(own_deviations(camera, control, fan_has_scale=False))
+        deviations = calibration.deviations
         if self.stability == STABLE:
-            return deviations
-        deviations = (*deviations, *changes(camera.camera, fan.fan))
-        evidence = scan_evidence(scan, camera.camera, fan.fan, deviations)
-        seen = plan_check(design, seed)
+            return (*deviations, *own)
+        deviations = (*deviations, *followed_by_planes(changes(camera, fan.fan), camera, control, fan.scale_sd))
+        evidence = scan_evidence(scan, camera, control, deviations)
+        seen = plan_check(design, seed) if design.has_fan else []
         if seen:
-            evidence += check_poses(seen, camera.camera, fan, deviations)[1]
-        return judge(camera.camera, fan.fan, deviations, evidence, self.stability).deviations
+            evidence += check_poses(seen, camera, fan, deviations)[1]
+        judged = judge(camera, fan.fan, deviations, evidence, self.stability, planes=control.plane_pis)
+        return (*judged.deviations, *own)
 
     def _features(self, design: Design, height_mm: float, seed: int) -> ScanFeatures:
         known = replace(

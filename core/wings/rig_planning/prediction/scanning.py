@@ -18,6 +18,7 @@ from core.simulate.scan import LAMP
 from core.simulate.scene.image import generator
 from core.simulate.scene.laser import Sheet, fan_sheets
 from core.simulate.scene.scene import Scene
+from core.wings.rig_planning.prediction.boards import board_triangles, lines_on_boards
 from core.wings.rig_planning.prediction.design import Design, PlanError
 from core.wings.rig_planning.prediction.light_lines import FlatFace, LitLine, faces_of, lit_lines
 from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
@@ -29,15 +30,16 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
     Raises
     ------
     PlanError
-        If the camera would see no stripe of the fan or of the hand-held laser.
+        If the camera would see no stripe of a fan that is there, or of the hand-held laser.
     """
     stage = Stage(design, height_mm)
-    fan_lines = stage.lines(fan_sheets(stage.rig, design.work_point), SeenStripes.of_fan(design))
+    lit_by_fan = fan_sheets(stage.rig, design.work_point) if design.has_fan else ()
+    fan_lines = stage.lines(lit_by_fan, SeenStripes.of_fan(design))
     sheets = design.sweeps_over(stage.scene, seed)
     hand = SeenStripes.of_hand(design)
     sweep_lines = [stage.lines([sheet], hand) for sheet in steps(sheets, progress, "stripes", len(sheets))]
     every = [line for lines in sweep_lines for line in lines]
-    if not fan_lines:
+    if design.has_fan and not fan_lines:
         raise PlanError(
             Message("plan.fan_not_seen", "the camera would see no stripe of the fan on table and block"),
             where="[plan]",
@@ -50,7 +52,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
             todo=Message("plan.advice_check_hand", "check hand_baseline_mm, distance_mm and focal_mm"),
         )
     background = stage.background_grey()
-    fan_seen = SeenStripes.of_fan(design).tried(fan_lines, background)
+    fan_seen = SeenStripes.of_fan(design).tried(fan_lines, background) if fan_lines else hand
     hand = hand.tried(every, background)
     noise = generator(seed, "scan noise")
     fan = _longest_first(fan_seen.centreline(line, noise) for line in fan_lines)
@@ -62,7 +64,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
             FrameFeatures(index, f"sweep {index + 1}", pieces, None if pieces else Exclusion.WITHOUT_STRIPE)
             for index, pieces in enumerate(frames)
         ],
-        (_settings(fan_lines), _settings(every)),
+        (_settings(fan_lines or every), _settings(every)),
         progress=progress,
     )
 
@@ -76,16 +78,19 @@ class Stage:
         self.scene = scene or design.scene(height_mm)
         self._ambient = design.ambient_grey
         self.faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
+        self._design, self._occluders = design, self.scene.occluders
+        if design.boards:
+            self._occluders = np.concatenate([self._occluders, board_triangles(design)])
 
     def lines(self, sheets: Sequence[Sheet], seen: SeenStripes) -> list[LitLine]:
         """Compute the stripes that the light `sheets` draw on the scene's faces, trimmed as the extraction does."""
-        return [
-            line
-            for sheet in sheets
-            for line in lit_lines(
-                sheet, self.faces, self.scene.occluders, self.camera, self.rig.blur_px, seen.filter_px
-            )
-        ]
+        found: list[LitLine] = []
+        for sheet in sheets:
+            hidden, camera, blur = self._occluders, self.camera, self.rig.blur_px
+            found += lit_lines(sheet, self.faces, hidden, camera, blur, seen.filter_px)
+            if self._design.boards:
+                found += lines_on_boards(self._design, sheet, hidden, camera, blur, seen.filter_px)
+        return found
 
     def background_grey(self) -> float:
         """Compute the mean grey level of table and block in the room's light."""

@@ -371,7 +371,7 @@ def test_a_project_that_cannot_be_made_is_not_open(
     projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Block", tmp_path / "file"))
+    monkeypatch.setattr(ask, "ask_new_project", lambda *_: ("Block", tmp_path / "file", 0))
     projects.new_project()
     assert not projects.model.is_open
     assert len(errors(projects)) == 1
@@ -533,11 +533,31 @@ def test_a_folder_that_is_in_the_samples_way_is_left_alone(projects: ProjectActi
     assert list((base / "Sample").iterdir()) == []
 
 
+def test_a_new_project_without_a_fan_states_its_boards_and_has_their_sheets(
+    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    monkeypatch.setattr(ask, "ask_new_project", lambda *_: ("Corner", tmp_path, 1))
+    projects.new_project()
+    model = projects.model
+    assert not model.project.rig.has_fan
+    qtbot.waitUntil(lambda: bool(model.project.rig.known_planes), timeout=30_000)
+    assert set(model.project.rig.known_planes) == {"floor", "wall"}
+    assert (tmp_path / "Corner" / "corner.pdf").read_bytes().startswith(b"%PDF")
+    assert not errors(projects)
+
+
+def test_the_simulated_rig_can_be_tried_without_a_fan(projects: ProjectActions) -> None:
+    projects.try_simulated_without_fan()
+    rig = projects.model.project.rig
+    assert not rig.has_fan and set(rig.known_planes) == {"near", "far"}
+    assert rig.gauge is not None and projects.model.project.info.name
+
+
 def test_a_new_project_for_a_rig_of_one_s_own_does_not_begin_with_the_simulated_one(
     projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     names = iter(("first", "second"))
-    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: (next(names), tmp_path))
+    monkeypatch.setattr(ask, "ask_new_project", lambda *_: (next(names), tmp_path, 0))
     live = LiveSettings(projects.bench, "scan")
     projects.try_simulated()
     assert live.kind == "simulated"

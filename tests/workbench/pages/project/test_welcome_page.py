@@ -109,7 +109,7 @@ def test_every_link_leads_somewhere(
     click(qtbot, page.simulated)
     assert model.is_open
     assert went == ["camera"]
-    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path))
+    monkeypatch.setattr(ask, "ask_new_project", lambda *_: ("Mine", tmp_path, 0))
     click(qtbot, page.new)
     assert model.folder == tmp_path / "Mine"
     create_project(tmp_path / "other", ProjectFile(new_project("Other")))
