@@ -59,7 +59,8 @@ class ScanPreviewer:
     def __init__(
         self, camera: Camera | None, fan: Fan | None, stripe: StripeSettings | None = None, *, has_fan: bool = True
     ) -> None:
-        self._camera, self._known, self._stripe, self._has_fan = camera, fan and Control(fan), stripe, has_fan
+        self._camera, self._stripe, self._has_fan = camera, stripe, has_fan
+        self._known: Control | None = None if fan is None else Control(fan)
         self._reference: ReferenceFeatures | None = None
         self._preview: Preview | None = None
         self._seen: list[StripeSettings] = []
