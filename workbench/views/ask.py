@@ -19,7 +19,6 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.language import tr
-from workbench.views.common import Choice
 from workbench.views.layouts import in_row
 
 
@@ -79,12 +78,6 @@ def ask_line(parent: QWidget | None, title: str, text: str) -> str:
     return line.strip() if given else ""
 
 
-def ask_name_and_pin(parent: QWidget | None, title: str, names: Sequence[str]) -> tuple[str, str] | None:
-    """Ask for one of `names` and the PIN of that person; None if the user cancels."""
-    dialog = _NameAndPin(parent, title, names)
-    return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
-
-
 def ask_next_part(parent: QWidget | None, part: str, operator: str, folder: Path) -> tuple[str, str, Path] | None:
     """Ask for the next part's serial number, operator and project folder; None if the user cancels."""
     dialog = _NextPart(parent, part, operator, folder)
@@ -137,26 +130,6 @@ class _NextPart(QDialog):
             problem = ""
         self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(not problem)
         self._will.setText(problem or tr("The project will be the folder {folder}.", folder=target))
-
-
-class _NameAndPin(QDialog):
-    def __init__(self, parent: QWidget | None, title: str, names: Sequence[str]) -> None:
-        super().__init__(parent)
-        self.setWindowTitle(title)
-        self._name, self._pin = Choice(), QLineEdit()
-        self._name.addItems(list(names))
-        self._pin.setEchoMode(QLineEdit.EchoMode.Password)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
-        form = QFormLayout(self)
-        form.addRow(tr("Name"), self._name)
-        form.addRow(tr("PIN"), self._pin)
-        form.addRow(buttons)
-
-    def answer(self) -> tuple[str, str]:
-        """Name and PIN."""
-        return self._name.currentText(), self._pin.text()
 
 
 class _NameAndFolder(QDialog):

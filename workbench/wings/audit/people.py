@@ -16,6 +16,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.project_model import EditGuard
 from workbench.views import ask
+from workbench.wings.audit import pin
 
 if TYPE_CHECKING:
     from workbench.main_window import MainWindow
@@ -75,12 +76,12 @@ class PeopleGuard(EditGuard):
         )
         return ask.ask_line(self.window, tr("Reason"), text) or None
 
-    def sign_in(self, name: str, pin: str) -> None:
+    def sign_in(self, name: str, secret: str) -> None:
         """Sign a person in as the author of all further changes; InputError if name and PIN do not match.
 
         What was done before cannot be undone by somebody who may not.
         """
-        self.signed_in = with_pin(self.rules, name, pin)
+        self.signed_in = with_pin(self.rules, name, secret)
         self._model.undo_stack.clear()
 
     def sign_out(self) -> None:
@@ -120,7 +121,7 @@ class PeopleGuard(EditGuard):
 
     def _ask_who(self) -> bool:
         """Ask for name and PIN; False if they are not given, or do not belong together."""
-        given = ask.ask_name_and_pin(self.window, tr("Sign in"), self.names)
+        given = pin.ask_name_and_pin(self.window, tr("Sign in"), self.names)
         if given is None:
             return False
         try:

@@ -17,7 +17,7 @@ from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen, set_text
-from workbench.wings.audit import jobs
+from workbench.wings.audit import jobs, pin
 from workbench.wings.audit.people import names_of_people
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ class AuditWindow(QDialog):
         self.found.setText("\n".join(map(text_of, said)))
 
     def _ask_for_signature(self) -> None:
-        given = ask.ask_name_and_pin(self, tr("Sign"), names_of_people(self._bench))
+        given = pin.ask_name_and_pin(self, tr("Sign"), names_of_people(self._bench))
         meaning = "" if given is None else ask.ask_line(self, tr("Sign"), tr("What the signature means:"))
         if given is not None and meaning:
             try:

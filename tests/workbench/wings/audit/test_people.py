@@ -24,6 +24,7 @@ from workbench.pages.project.actions import ProjectActions
 from workbench.project_model import ProjectModel
 from workbench.views import ask
 from workbench.wing import guard_project
+from workbench.wings.audit import pin
 from workbench.wings.audit.people import PeopleGuard, guard_of
 
 __all__ = ["asked", "projects"]
@@ -70,7 +71,7 @@ def test_where_people_have_roles_an_inspectors_pin_leads_out(
     window.model.open(measured_project)
     window.enter_operator_mode()
     answers: list[tuple[str, str] | None] = [None, ("Ada", "0000"), ("Bo", "5678"), ("Ada", "1234")]
-    monkeypatch.setattr(ask, "ask_name_and_pin", lambda *_: answers.pop(0))
+    monkeypatch.setattr(pin, "ask_name_and_pin", lambda *_: answers.pop(0))
     for said in ("", "do not belong together", "inspector or administrator"):
         window.operator.leaving.click()
         assert window.operator_mode.on and window.operator.isVisible()

@@ -22,6 +22,7 @@ from workbench.bench import Bench
 from workbench.main_window import MainWindow
 from workbench.pages.project.actions import ProjectActions
 from workbench.views import ask
+from workbench.wings.audit import pin
 from workbench.wings.audit.people import PeopleGuard
 from workbench.wings.audit.window import AuditWindow
 
@@ -82,7 +83,7 @@ def test_somebody_signs_in_changes_limits_signs_and_signs_out(
     projects.close_project()
     projects.open_project(folder)
     given = [("Anna", "wrong"), ("Anna", "anna-1"), ("Anna", "anna-1")]
-    monkeypatch.setattr(ask, "ask_name_and_pin", lambda parent, title, names: given.pop(0))
+    monkeypatch.setattr(pin, "ask_name_and_pin", lambda parent, title, names: given.pop(0))
     monkeypatch.setattr(ask, "ask_line", lambda *_: "released")
     guard.sign_in_or_out(projects.save)
     assert "do not belong together" in projects.bench.notices.all[-1].text
