@@ -327,9 +327,14 @@ def test_windows_are_not_tried_on_a_second_python():
 
 
 @pytest.fixture(scope="module")
-def proofs(syntax_trees) -> dict[Path, set[str]]:
+def tree(syntax_trees) -> Tree:
+    """All that this project defines."""
+    return Tree(ROOT)
+
+
+@pytest.fixture(scope="module")
+def proofs(tree) -> dict[Path, set[str]]:
     """Those of this project, each with what it rests on."""
-    tree = Tree(Path(__file__).parents[1])
     return {path: tree.proof(path) for path in proofs_of()}
 
 
@@ -338,9 +343,8 @@ def test_no_proof_of_this_project_is_overlooked(proofs):
     assert all({"tests.conftest", "core"} <= rests_on for rests_on in proofs.values())
 
 
-def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(proofs):
+def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(tree, proofs):
     """A change of a command or a drawing would touch nearly every proof, as each tells findings."""
-    tree = Tree(ROOT)
     rests_on = tree.closure(["core.findings.table"])
     assert not {name for name in rests_on if name.startswith("core.cli")}
     assert "core.wings.studies.findings" in rests_on and len({name.partition(":")[0] for name in rests_on}) < 50
@@ -350,9 +354,8 @@ def test_what_a_wing_names_is_rested_on_by_way_of_what_asks_for_it(proofs):
     assert "core.wings.studies.printed" in tree.closure(["core.pipeline.steps.brought_sections"])
 
 
-def test_each_finding_is_rested_on_by_who_names_its_code(proofs):
+def test_each_finding_is_rested_on_by_who_names_its_code(tree, proofs):
     """A row that nobody reached would be left out of every proof: tables of findings change often, most rows never."""
-    tree = Tree(ROOT)
     codes = set(finding_codes()) - {row.code for row in of_proof.ROWS}  # of these the codes are put together
     reached = {name for name in tree.closure(["core.cli.app", "workbench.app"]) if name.partition(":")[2] in codes}
     assert len(reached) == len(codes) > 100
@@ -360,15 +363,15 @@ def test_each_finding_is_rested_on_by_who_names_its_code(proofs):
     assert not of_boards & {code for code in codes if code.startswith("scan.")}
 
 
-def test_who_reaches_a_definition_is_who_rests_on_it(proofs):
+def test_who_reaches_a_definition_is_who_rests_on_it(tree, proofs):
     for one in ("core.scan.standstill:SCORE_LIMIT", "core.image.targets.corners"):
-        found = Tree(ROOT).who_reach([one], proofs)[one]
+        found = tree.who_reach([one], proofs)[one]
         assert found == [path for path, rests_on in proofs.items() if one in rests_on] != []
 
 
-def test_a_proof_of_pictures_rests_on_little_of_the_program(proofs):
+def test_a_proof_of_pictures_rests_on_little_of_the_program(tree, proofs):
     """Where it imports a module, it does not rest on all that this has for others."""
-    program = {name for name in Tree(ROOT).closure(["core.cli.app"]) if name.startswith("core.")}
+    program = {name for name in tree.closure(["core.cli.app"]) if name.startswith("core.")}
     of_boards = {name for name in proofs[Path("tests/image/targets/test_checkerboard.py")] if name.startswith("core.")}
     assert "core.image.targets.checkerboard" in of_boards
     assert len(of_boards) < len(program) / 8
