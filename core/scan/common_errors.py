@@ -3,7 +3,9 @@
 A covariance is the sum of the outer products of its principal deviations. So the scan is solved again with camera and
 fan displaced along each of them, one standard deviation at a time, and every pixel triangulated again: to first order
 the variance of any quantity of the points is the sum of the squares of its changes. No derivative of the adjustment is
-needed, and what points have in common stays common.
+needed, and what points have in common stays common. The robust weights are found anew each time: a displaced camera
+moves the residuals, and with the weights and the factor of the first solution σ came out between 0.7 and 8 times as
+large, from point to point.
 """
 
 from __future__ import annotations
