@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.inspect.fit import surface_fit
+from core.inspect.fit.generalised import Generalised, generalised_fit
 from core.inspect.fit.round import sphere_through
 from core.inspect.fit.shapes import Cylinder, ParallelPlanes, Shape
 from core.inspect.fit.surface_fit import fit_surface
 from core.inspect.gauge import measure_gauge
+from core.inspect.uncertainty.error_sources import Sources
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
@@ -49,6 +52,26 @@ def off_by(kind: str, seed: int, form_mm: float) -> tuple[float, float, float]:
     form = fit_surface(wavy, np.arange(len(cloud)), start, errors, form_mm=0.0).form
     assert form is not None
     return form.value, 2 * form.u, form_mm
+
+
+@pytest.mark.parametrize("kind", ["plane", "sphere"])
+def test_a_fit_that_ends_with_the_step_at_rest_is_that_of_all_steps(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cloud, _, start, errors = surface(kind, 0)
+    steps = [0]
+
+    def counted(design: Array, misfit: Array, sources: Sources) -> Generalised:
+        steps[-1] += 1
+        return generalised_fit(design, misfit, sources)
+
+    monkeypatch.setattr(surface_fit, "generalised_fit", counted)
+    ended = fit_surface(cloud, np.arange(len(cloud)), start, errors)
+    monkeypatch.setattr(surface_fit, "AT_REST", 0.0)
+    steps.append(0)
+    whole = fit_surface(cloud, np.arange(len(cloud)), start, errors)
+    assert steps[0] < steps[1] == surface_fit.STEPS
+    np.testing.assert_allclose(ended.residuals, whole.residuals, atol=1e-8)
+    for one, other in zip(ended.effects, whole.effects, strict=True):
+        np.testing.assert_allclose(np.linalg.norm(one.factor), np.linalg.norm(other.factor), rtol=1e-4)
 
 
 @pytest.mark.parametrize("count", [8, HUNDRED])
