@@ -10,6 +10,8 @@ from core.files.recording.recording_set import RecordingSet
 from core.files.results import ply
 from core.pipeline import run as whole_run
 from core.pipeline.run import RunResult
+from core.pipeline.steps.join_step import JoinResult as JoinedViews
+from core.pipeline.steps.join_step import join_step
 from core.pipeline.steps.report_step import report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -195,3 +197,44 @@ def report(folder: str | Path, out: str | Path, *, progress: Progress = silent) 
     'report.pdf'
     """
     return report_step(Workspace.open(open_set(folder), Path(out)), progress)
+
+
+def join_views(
+    folder: str | Path, out: str | Path, *, options: Options | None = None, progress: Progress = silent
+) -> JoinedViews:
+    """Join the views of a measured set by the marks of its carrier, and measure the thickness across them.
+
+    Views that have not been measured are measured first, with the calibration in `out`; joined.ply and joint.json are
+    written there.
+
+    Parameters
+    ----------
+    folder
+        The recording set, with carrier.toml and further views in views/NAME.
+    out
+        The folder with its results.
+    options
+        How views are measured; None: as usual.
+    progress
+        Called with how far it is.
+
+    Returns
+    -------
+    JoinedViews
+        `joined.cloud`: n points (n, 3) in mm in the first view's camera frame, each with its `view`; `joined.joint`;
+        `check`; and `thickness`, a Gauge.
+
+    Raises
+    ------
+    InputError
+        If there is no carrier.toml or no further view, or the marks do not hold a view.
+
+    Examples
+    --------
+    >>> try:
+    ...     join_views(place / "set", place / "measured")
+    ... except InputError as problem:
+    ...     print(problem.what)
+    there is no further view of the part to join
+    """
+    return join_step(Workspace.open(open_set(folder), Path(out)), options, progress)

@@ -15,12 +15,13 @@ from core.inspect.results import GaugeResult as Gauge
 from core.inspect.uncertainty.part import Part
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.project.opened import open_project
+from core.pipeline.steps.join_step import JoinResult as JoinedViews
 from core.scan.method import ReconstructOptions
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.settings.options import Options
 from trisect.calibration import calibrate_camera, calibrate_fan
-from trisect.folders import open_set, read_cloud, report, run, simulate, write_cloud
+from trisect.folders import join_views, open_set, read_cloud, report, run, simulate, write_cloud
 from trisect.inspection import measure_features, measure_thickness
 from trisect.pictures import compression_of, extract_stripes, find_crossings, find_target, read_picture
 from trisect.scan import SolvedScan, build_mesh, fuse, solve_scan, triangulate
@@ -43,6 +44,7 @@ __all__ = [
     "FeatureKind",
     "Gauge",
     "InputError",
+    "JoinedViews",
     "Length",
     "LightPlane",
     "Mesh",
@@ -61,6 +63,7 @@ __all__ = [
     "find_crossings",
     "find_target",
     "fuse",
+    "join_views",
     "measure_features",
     "measure_thickness",
     "open_project",

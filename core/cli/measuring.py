@@ -27,6 +27,7 @@ from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
 from core.files.results.folder_results import read_results
+from core.files.results.joint_file import joint_table
 from core.files.results.rig_history import RigHistory, history_file
 from core.files.step_graph import READJUST
 from core.inspect.conformity import Verdict
@@ -40,6 +41,7 @@ from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.gauge_step import gauge_step
+from core.pipeline.steps.join_step import join_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
@@ -226,6 +228,20 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Sho
         gauge, verdict = gauge_step(work, progress), read_results(work.out).verdict
         rows, values = output.gauge_rows(gauge, verdict), output.gauge_json(gauge, verdict)
         return verdict, _shown(work, "gauge", rows, values, "gauge")
+
+
+def run_join(folder: Path, out: Path, chosen: Options, progress: Progress) -> tuple[Verdict, Shown]:
+    """Run the join step on a recording set; return the verdict on the thickness and what is to be printed."""
+    with alone_with(folder, out, chosen.part, chosen.channel) as work:
+        result = join_step(work, chosen.for_scan, progress)
+        gauge, joint = result.thickness, result.joined.joint
+        rows = output.gauge_rows(gauge, gauge.verdict)
+        rows += [
+            (tr("view {name}", name=name), tr("{n} marks of the carrier", n=len(seen)))
+            for name, seen in zip(joint.views, joint.seen, strict=True)
+        ]
+        values = {**output.gauge_json(gauge, gauge.verdict), "views": joint_table(joint)}
+        return gauge.verdict, _shown(work, "join", rows, values, "joined", "joint")
 
 
 def run_profile(

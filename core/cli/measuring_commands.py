@@ -230,6 +230,19 @@ def profile(
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
+@takes("scan")
+def join(folder: Set, out: Out, typed: Typed = NOTHING_TYPED, json: Json = False) -> None:
+    """Join the scan with the views in SET/views by the marks of SET/carrier.toml; writes joined.ply and joint.json."""
+    from core.cli import arguments, measuring
+
+    options = arguments.options(typed)
+    with bar("scan") as progress:
+        verdict, shown = measuring.run_join(folder, out, options, progress)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code(verdict))
+
+
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def gauge(folder: Set, out: Out, json: Json = False) -> None:
     """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
     from core.cli import measuring

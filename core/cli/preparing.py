@@ -11,11 +11,13 @@ from core.cli.language import tr
 from core.cli.options import one_of
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
+from core.files.recording.carrier_file import write_carrier
 from core.files.recording.rig import known_planes_to_toml, read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
 from core.pipeline.steps.prints import write_quick_card
+from core.report.carrier_sheet import carrier_on, carrier_sheets
 from core.report.corner_sheet import CornerKind, corner_of_boards, corner_sheets
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
@@ -23,6 +25,8 @@ from core.report.wording import target_in_words
 
 CORNER = "corner"
 """The kind of target that is two boards."""
+CARRIER = "carrier"
+"""The kind of target that is both sides of a carrier of reference marks."""
 CORNER_KINDS = get_args(CornerKind)
 _PRINT_TO_SIZE = Message(
     "target.print_to_size",
@@ -73,6 +77,24 @@ def write_corner(board: str, paper: str, out: Path) -> str:
     tables = known_planes_to_toml(stated)
     write_bytes(out, corner_sheets({one: board.target for one, board in stated.items()}, name, tables))
     return tables
+
+
+def write_carrier_sheets(paper: str, out: Path) -> Path:
+    """Write a PDF with both sides of a carrier to `out`, and beside it the carrier as printed; return that file."""
+    name = _paper(paper)
+    carrier, file = carrier_on(name), out.with_suffix(".toml")
+    write_bytes(out, carrier_sheets(carrier, name))
+    write_carrier(file, carrier)
+    return file
+
+
+def show_carrier(file: Path, paper: str, out: Path, *, as_json: bool) -> None:
+    """Print where a carrier's PDF and its file were written; with `as_json`, as one JSON object."""
+    if as_json:
+        output.print_json({"paper": _paper(paper), "file": str(out), "carrier": str(file)})
+        return
+    rows = [(tr("paper"), _paper(paper)), (tr("written"), str(out)), (tr("carrier, as printed"), str(file))]
+    output.print_rows(rows, [_PRINT_TO_SIZE])
 
 
 def show_corner(tables: str, paper: str, out: Path, *, as_json: bool) -> None:

@@ -17,7 +17,7 @@ commands = typer.Typer()
 def target(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
     kind: Annotated[
-        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid, black_square or corner.")
+        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid, black_square, corner or carrier.")
     ] = "",
     columns: Annotated[
         int | None,
@@ -43,12 +43,15 @@ def target(
     ] = "charuco",
     json: Json = False,
 ) -> None:
-    """Write a calibration target as a PDF to scale, to be printed at 100 %; for a corner, the sheets of two boards."""
+    """Write a calibration target as a PDF to scale, to be printed at 100 %; of a corner or carrier, two."""
     from core.cli import preparing
 
     if kind == preparing.CORNER and rig is None:
         tables = preparing.write_corner(board, paper, out)
         preparing.show_corner(tables, paper, out, as_json=json)
+        return
+    if kind == preparing.CARRIER and rig is None:
+        preparing.show_carrier(preparing.write_carrier_sheets(paper, out), paper, out, as_json=json)
         return
     preparing.one_choice(kind, rig)
     printed = (

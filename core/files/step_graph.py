@@ -33,6 +33,8 @@ FILES = {
     "comparison": "comparison.json",
     "compared": "comparison.ply",
     "comparison_table": "comparison.csv",
+    "joined": "joined.ply",
+    "joint": "joint.json",
     "report": "report.pdf",
     "run": "run.json",
 }
@@ -120,6 +122,7 @@ GRAPH = (
         SURFACES,
         on_request=True,
     ),
+    Step("join", "inspect", ("joined", "joint"), "joint", ("scan",), on_request=True),
     Step("report", "report", ("report",), "report", ("scan",), shows=("gauge", "inspection"), in_project=True),
 )
 """Every step, in the order of work."""

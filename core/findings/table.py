@@ -12,12 +12,12 @@ from functools import cache
 from typing import Any, TypeGuard
 
 from core.door import Brought
-from core.findings import of_artefacts, of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan
+from core.findings import of_artefacts, of_camera, of_part, of_pictures, of_planes, of_proof, of_rig, of_scan, of_views
 from core.findings.finding import Finding, Weight
 from core.messages import Message
 from core.wing import rows_of_wings
 
-_SUBJECTS = (of_camera, of_planes, of_rig, of_pictures, of_scan, of_part, of_artefacts, of_proof)
+_SUBJECTS = (of_camera, of_planes, of_rig, of_pictures, of_scan, of_part, of_artefacts, of_views, of_proof)
 FINDINGS: Mapping[str, Finding] = {row.code: row for subject in _SUBJECTS for row in subject.ROWS}
 """By the code of the note; those of the wings are not among them: see `finding_of`."""
 assert len(FINDINGS) == sum(len(subject.ROWS) for subject in _SUBJECTS)

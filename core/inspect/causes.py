@@ -49,6 +49,10 @@ class Cause(Enum):
     KNOWN_SIZE_ASSUMED = Message("inspection.cause_known_size_assumed", "known planes: size (assumed)")
     SKEWED_FAN = Message("inspection.cause_skewed_fan", "light of the fan, skewed otherwise than in its calibration")
 
+    JOINT_MARKS = Message("inspection.cause_joint_marks", "joint: marks")
+    JOINT_CARRIER = Message("inspection.cause_joint_carrier", "joint: carrier")
+    JOINT_DEPTH_BIAS = Message("inspection.cause_joint_depth_bias", "joint: common depth bias (twice)")
+
     PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
     SPRAY = Message("inspection.cause_spray", "layer of spray on the part")
     SPRAY_ASSUMED = Message("inspection.cause_spray_assumed", "layer of spray on the part (assumed)")
@@ -97,7 +101,7 @@ OF_TARGET = frozenset(
     (Cause.SCALE_TEMPERATURE, Cause.SCALE_EXPANSION, Cause.SCALE_TEMPERATURE_ASSUMED, Cause.SCALE_EXPANSION_ASSUMED)
 )
 """What the warmth of the calibration target does: the same to all that is measured with one calibration."""
-FROM_BELOW = frozenset((Cause.LIGHT_FROM_BELOW, Cause.LIGHT_FROM_BELOW_ASSUMED))
+FROM_BELOW = frozenset((Cause.LIGHT_FROM_BELOW, Cause.LIGHT_FROM_BELOW_ASSUMED, Cause.JOINT_DEPTH_BIAS))
 """Light from below the surface that is not seen."""
 OF_BOARDS = frozenset(
     (

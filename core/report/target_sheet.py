@@ -92,7 +92,7 @@ def draw_target(canvas: Any, target: Target, paper: SheetPaper, *, title: str = 
     """Draw a target on a page of reportlab's `canvas`, with rulers and words; InputError if it does not fit `paper`."""
     layout = sheet_layout(target, paper)
     _draw_art(canvas, target_art(target), layout)
-    _draw_rulers(canvas)
+    draw_rulers(canvas)
     _draw_words(canvas, target, paper, layout, title)
 
 
@@ -195,8 +195,8 @@ def _draw_art(canvas: Any, art: TargetArt, layout: SheetLayout) -> None:
     canvas.drawPath(path, stroke=0, fill=1)
 
 
-def _draw_rulers(canvas: Any) -> None:
-    """One along the lower and one along the left edge, ticks every 10 mm, from the middle of a tick to the other's."""
+def draw_rulers(canvas: Any) -> None:
+    """Draw rulers along the lower and the left edge, ticks every 10 mm, from the middle of a tick to the other's."""
     canvas.saveState()
     canvas.setLineWidth(0.15 * mm)
     canvas.setStrokeColor(color(INK))

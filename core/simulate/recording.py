@@ -16,7 +16,8 @@ from core.calibrate.change import displaced_fan
 from core.errors import InputError
 from core.files.atomic import folder_beside, write_bytes, write_text
 from core.files.pictures import write_picture
-from core.files.recording.recording_set import KNOWN_PLANES
+from core.files.recording.carrier_file import write_carrier
+from core.files.recording.recording_set import CARRIER, KNOWN_PLANES, VIEWS
 from core.held_files import remove_tree, rename
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
@@ -28,6 +29,7 @@ from core.simulate.rays import ray_map
 from core.simulate.rig import FULL_SIZE, Optics, Rig, paper_rig
 from core.simulate.scan import ScanStage, StageEffects
 from core.simulate.scenario import Scenario
+from core.simulate.scene.carrier import SIDES, calibrated_carrier
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.known_planes import stated_planes
 from core.simulate.scene.laser import Sheet
@@ -40,6 +42,8 @@ from core.threads import ordered_map
 
 BOARDS_GREY = 150.0
 """8-bit grey level of a white surface in the room's light while the boards beside the object are taken."""
+TURNED, TURNED_SEED = "turned", 104_729
+"""Name of the second view of a block in its carrier, and what is added to the scenario's seed for it."""
 RENDER_THREADS = 2
 """Pictures rendered and written at once: as many as a small machine has cores."""
 
@@ -132,7 +136,9 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 
     first = ["reference"] if scenario.reference and scenario.hand_laser else []
     _write_all(made, shoot, [*first, *shots], progress, "frames", scenario.sensor)
-    boards = {board.name: board for board in stage.scene.boards}
+    if scenario.carrier.marks:
+        _render_turned(scenario, rig, made, progress)
+    boards = {board.name: board for board in stage.scene.boards if board.name not in SIDES}
 
     def shoot_boards(name: str) -> Iterator[tuple[str, Picture]]:
         yield f"{KNOWN_PLANES}/{name}.png", stage.boards(list(boards).index(name), BOARDS_GREY)
@@ -149,6 +155,28 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
     fan = rig.fan if scenario.fan_lines else None
     truth = Truth(rig.camera, fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table, places)
     save_truth(hidden, truth, asdict(scenario))
+
+
+def turned_over(scenario: Scenario) -> Scenario:
+    """Make the scenario of the second view: the block with its carrier turned over, put down and scanned anew."""
+    turned = replace(scenario.carrier, turned=True)
+    return replace(scenario, carrier=turned, seed=(scenario.seed + TURNED_SEED) % 2**63)
+
+
+def _render_turned(scenario: Scenario, rig: Rig, made: Path, progress: Progress) -> None:
+    """Render the second view of a block in its carrier, and write what the carrier's calibration states."""
+    stage, sheets, _ = scan_of(turned := turned_over(scenario), rig)
+    moving = moving_sheets(turned, sheets)
+    (made / VIEWS / TURNED).mkdir(parents=True)
+
+    def shoot(name: str) -> Iterator[tuple[str, Picture]]:
+        index = int(name.removeprefix("frame") or 0) if name != "reference" else -1
+        picture = stage.reference() if index < 0 else stage.frame(index, *moving[index])
+        yield f"{VIEWS}/{TURNED}/{name}.png", picture
+
+    names = [f"frame{index:04d}" for index in range(len(sheets))]
+    _write_all(made, shoot, ["reference", *names], progress, "frames", scenario.sensor)
+    write_carrier(made / CARRIER, calibrated_carrier(scenario))
 
 
 def scenario_rig(scenario: Scenario) -> Rig:

@@ -14,6 +14,7 @@ from core.files.limits import TOML_BYTES
 from core.files.reading import read_text, toml_of
 from core.messages import Message
 from core.simulate.effects.boards import NO_BOARDS, BoardsBeside
+from core.simulate.effects.carrier import NO_CARRIER, CarrierBeside
 from core.simulate.effects.laser import GAUSSIAN_LASER, LaserEffects
 from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.plates import TRUE_PLATES, PlateEffects
@@ -113,6 +114,8 @@ class Scenario:
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     boards
         What lies beside the object, and is known to lie there; a table as well.
+    carrier
+        The carrier of reference marks that a block stands in, for a second view of it turned over; a table as well.
     fan_lines
         3, or 1: the fan's middle line alone; 0: there is no fan, nor pictures of one.
     hand_laser
@@ -174,6 +177,7 @@ class Scenario:
     setup: Setup = USUAL_SETUP
     transport: Transport = ONE_WAY
     boards: BoardsBeside = NO_BOARDS
+    carrier: CarrierBeside = NO_CARRIER
 
     def __post_init__(self) -> None:
         choices = (

@@ -1,5 +1,5 @@
 """`make accuracy`: measure the accuracy table anew, the hostile one, false alarms on ideal rigs, causes told, the
-simulated tour, what assumptions do to sets in order, or whether remedies help.
+simulated tour, joined views, what assumptions do to sets in order, or whether remedies help.
 
 Long: hours; `--short` takes a few minutes.
 """
@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from core.files.atomic import write_text
-from tests.accuracy import bounds, coverage, hostile, points
+from tests.accuracy import bounds, coverage, hostile, joints, points
 from tests.accuracy import ideal as assumptions
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
@@ -39,7 +39,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("accuracy", "hostile", "ideal", "benign", "causes", "tour", "assumptions", "remedies"),
+        choices=("accuracy", "hostile", "ideal", "benign", "causes", "tour", "joints", "assumptions", "remedies"),
         default="accuracy",
         help="which table",
     )
@@ -48,6 +48,8 @@ def main() -> None:
     parser.add_argument("--manual", action="store_true", help="put the table into the manual")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
     parser.add_argument("--processes", type=int, default=PROCESSES)
+    parser.add_argument("--scale", type=float, default=0.5, metavar="SHARE", help="picture size of the joints")
+    parser.add_argument("--seeds", type=int, default=3, metavar="N", help="how many joints")
     chosen = parser.parse_args()
     commit = _commit()
     if chosen.what == "hostile":
@@ -57,6 +59,10 @@ def main() -> None:
         known = hostile_cases(0.25, IDEAL_SEEDS, (CHECK_POSES,))
         ideal = [case for case in known if case.effect == "nothing" and case.strength != NOTHING_STATED]
         print("\n".join(hostile.false_alarms(ideal, hostile.run(ideal, chosen.out / f"ideal-{commit}.jsonl"))))
+        return
+    if chosen.what == "joints":
+        with tempfile.TemporaryDirectory(prefix="joints-") as folder:
+            print(joints.summary(joints.joints(chosen.scale, chosen.seeds, Path(folder))))
         return
     if chosen.what == "tour":
         _tours(chosen.out / f"tour-{commit}.jsonl")

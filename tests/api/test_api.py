@@ -23,12 +23,13 @@ from trisect.scan import _plates
 PROMISED = {
     "read_picture", "extract_stripes", "find_crossings", "find_target", "calibrate_camera", "calibrate_fan",
     "triangulate", "solve_scan", "fuse", "build_mesh", "measure_thickness", "measure_features", "read_cloud",
-    "write_cloud", "open_set", "run", "simulate", "report", "open_project", "Camera", "LightPlane", "Fan", "Cloud",
+    "write_cloud", "open_set", "run", "simulate", "report", "join_views", "open_project",
+    "Camera", "LightPlane", "Fan", "Cloud",
     "Mesh", "Gauge", "Length", "InputError", "Cancelled",
     # what these take and give
     "BlackSquare", "BoardTolerance", "CameraCalibration", "Centreline", "Charuco", "Checkerboard", "CircleGrid",
-    "Crossing", "FanCalibration", "Feature", "Options", "Part", "ReconstructOptions", "SolvedScan", "Stability",
-    "TargetView", "compression_of",
+    "Crossing", "FanCalibration", "Feature", "JoinedViews", "Options", "Part", "ReconstructOptions", "SolvedScan",
+    "Stability", "TargetView", "compression_of",
     # what a package with kinds of features of its own declares
     "FeatureKind", "ResultKind",
 }  # fmt: skip

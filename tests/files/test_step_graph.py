@@ -7,6 +7,8 @@ from core.pipeline.steps.workspace import CLEARED
 
 OF_SURFACE = {"scan", "cloud", "mesh", "profiles", "profile_table", "profile"}
 OF_CLOUD = {"gauge", "faces", "inspection", "inspected", "comparison", "compared", "comparison_table"}
+OF_SCAN = {"joined", "joint"}
+"""Views are joined of scans, never of profiles."""
 
 
 def test_the_order_of_work_is_that_of_the_graph():
@@ -22,9 +24,9 @@ def test_every_result_is_made_by_one_step_and_run_json_tells_of_all():
 @pytest.mark.parametrize(
     ("result", "gone"),
     [
-        ("camera", {"planes", "poses", "calibrated", "check"} | OF_SURFACE | OF_CLOUD),
-        ("planes", {"calibrated", "check"} | OF_SURFACE | OF_CLOUD),
-        ("cloud", OF_CLOUD),
+        ("camera", {"planes", "poses", "calibrated", "check"} | OF_SURFACE | OF_CLOUD | OF_SCAN),
+        ("planes", {"calibrated", "check"} | OF_SURFACE | OF_CLOUD | OF_SCAN),
+        ("cloud", OF_CLOUD | OF_SCAN),
         ("profiles", OF_CLOUD),
         ("gauge", set()),
         ("report", set()),

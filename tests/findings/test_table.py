@@ -26,7 +26,10 @@ LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", 
 """What these say is of the moment: of one picture, one crossing, the next sweep."""
 ANSWERS = {"readjust.undone"}
 """What a command answers."""
-OF_ONE_RESULT = {"faces_not_spanned", "light_skewed", "master_doubted", "several_faces", "u_incomplete"}
+OF_ONE_RESULT = {
+    "faces_not_spanned", "joint_hangs_on_one_mark", "joint_inside_out", "joint_two_ways", "light_skewed",
+    "marks_disagree", "master_doubted", "overlap_disagrees", "several_faces", "u_incomplete",
+}  # fmt: skip
 """Facts that take away the proof of one result."""
 OF_THE_DAY = {
     "calibration_lapsed", "calibration_undated", "check_failed", "check_lapsed", "history_unreadable", "never_checked",

@@ -8,6 +8,8 @@ The layout is fixed, so that any program can write one::
     SET/scan/reference.png  fan only (optional)
     SET/scan/*              frames, in the order of their names
     SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
+    SET/carrier.toml        the marks of the carrier that the part is held in (optional)
+    SET/views/NAME/*        another view of the part on its carrier, files as in scan (optional)
     SET/scan/planes/NAME.png  a board lying beside the part during the scan; NAME_2.png … = the same board (optional)
 
 Of pictures in planes, scan and check NAME@2.png and NAME@3.png are further exposures, shorter or longer: of a stripe
@@ -52,6 +54,8 @@ CHECK = "check"
 KNOWN_PLANES = "scan/planes"
 """The folder of boards lying beside the part, within that of the scan: a set need not have one."""
 RIG = "rig.toml"
+VIEWS, CARRIER = "views", "carrier.toml"
+"""The folder of further views of the part, and the file that says where the marks of its carrier are."""
 _BRACKETED = ("planes", "scan", CHECK)
 """Folders whose pictures may have further exposures."""
 
@@ -233,6 +237,37 @@ def open_set(folder: Path) -> RecordingSet:
         places[KNOWN_PLANES] = folder / KNOWN_PLANES
     found = _listed(resolved(folder).name, rig, places, file_hash(folder / RIG))
     check_sizes([path for part in (*PARTS, CHECK, KNOWN_PLANES) for path in _paths(found, part)])
+    return found
+
+
+def further_views(recording_set: RecordingSet) -> dict[str, RecordingSet]:
+    """List the further views of the part in SET/views, each as a set with the same calibration and rig, by name.
+
+    Raises
+    ------
+    InputError
+        If its pictures are not all of one size.
+    """
+    folder = recording_set.rig_file.parent / VIEWS
+    if not folder.is_dir():
+        return {}
+    found = {}
+    for place in sorted(path for path in folder.iterdir() if path.is_dir()):
+        reference, frames = scan_frames(place)
+        folders = {part: path for part, path in recording_set.folders.items() if part != KNOWN_PLANES}
+        further = {**recording_set.further, **further_exposures(place)}
+        view = replace(
+            recording_set,
+            name=f"{recording_set.name} {place.name}",
+            folders={**folders, "scan": place},
+            reference=reference,
+            frames=frames,
+            further=further,
+            known_planes=(),
+            _logs={},
+        )
+        check_sizes(_paths(view, "scan"))
+        found[place.name] = view
     return found
 
 

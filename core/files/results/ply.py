@@ -33,6 +33,8 @@ _LEAST_LOST_MM = 1e-4
 """Coordinates that single precision rounds by more are written about an offset: beyond 2048 mm."""
 _OFFSET = "offset "
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
+_VIEW = "view"
+"""The view of each point, in the file of several views joined in one frame."""
 _CLOUD = [
     # In single precision, off by 0.03 µm at 700 mm: PCL's filters drop all points whose coordinates are double.
     *[("x", "f4"), ("y", "f4"), ("z", "f4")],
@@ -82,7 +84,10 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame 
     InputError
         If it cannot be written.
     """
-    vertices = np.empty(len(cloud), dtype=_CLOUD)
+    joined = bool(cloud.view.any())
+    vertices = np.empty(len(cloud), dtype=[*_CLOUD, (_VIEW, "i4")] if joined else _CLOUD)
+    if joined:
+        vertices[_VIEW] = cloud.view
     with np.errstate(over="ignore", invalid="ignore"):  # reading tells of coordinates that are not finite
         points = frame.coordinates(cloud.points)
         offset = _offset_of(points)

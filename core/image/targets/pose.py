@@ -193,11 +193,11 @@ def _jacobian(view: TargetView, camera: Camera, pose: Pose) -> Array:
     to_ray[:, 1, 2] = -y / z**2
     to_pixel = camera.matrix[:2, :2] @ camera.distort_jacobian(np.column_stack([x / z, y / z]))
     by_point = to_pixel @ to_ray
-    return np.concatenate([-by_point @ _cross(turned), by_point], axis=2)
+    return np.concatenate([-by_point @ cross_matrices(turned), by_point], axis=2)
 
 
-def _cross(vectors: Array) -> Array:
-    """Matrices (N, 3, 3) of the cross products with `vectors` (N, 3)."""
+def cross_matrices(vectors: Array) -> Array:
+    """Make the matrices (N, 3, 3) of the cross products with `vectors` (N, 3)."""
     x, y, z = vectors.T
     zero = np.zeros_like(x)
     return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
@@ -229,7 +229,7 @@ def _covariance(view: TargetView, camera: Camera, fit: _Fit) -> Array:
 def _vector_by_turn(vector: Array) -> Array:
     """∂(rotation vector)/∂(small rotation applied after it): the inverse left Jacobian of SO(3)."""
     angle = float(np.linalg.norm(vector))
-    cross = _cross(vector[None])[0]
+    cross = cross_matrices(vector[None])[0]
     factor = 1 / 12 if angle < 1e-4 else 1 / angle**2 - (1 + np.cos(angle)) / (2 * angle * np.sin(angle))
     inverse: Array = np.eye(3) - cross / 2 + factor * cross @ cross
     return inverse

@@ -20,10 +20,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
+from scipy.sparse import block_diag as sparse_block_diag
 from scipy.sparse import csr_array
 
 from core.calibrate.deviations import LAWLESS, UNMEASURED
 from core.inspect.causes import Cause
+from core.inspect.uncertainty.joined_errors import JoinedErrors
 from core.inspect.uncertainty.point_errors import PointErrors, along_stripes
 from core.inspect.uncertainty.skewed_light import light_below
 from core.model.arrays import Array
@@ -136,6 +139,8 @@ class Sources:
         errors
             Of the points.
         """
+        if isinstance(errors, JoinedErrors):
+            return _joined(cloud, np.broadcast_to(direction, cloud.points.shape), weights, (part, patch), errors)
         place = errors.places(cloud)
         stretch = errors.stretches(cloud, part, place)
         depth = cloud.points[:, 2]
@@ -330,3 +335,76 @@ def _of_common(
         for k, change in enumerate(errors.common.changes(half[:, :2], sweep)):
             effect[:, k] += np.einsum("ji,ji->j", change, half[:, 2:]) / 2
     return effect
+
+
+def _joined(
+    cloud: Cloud, direction: Array, weights: Array, places: tuple[NDArray[np.int64], ...], errors: JoinedErrors
+) -> Sources:
+    """Causes of error of a cloud of several views: each view's own, what all have in common, and the joint's.
+
+    `places` are the face and the patch (N,) of each point.
+    """
+    part, patch = places
+    stretch, share = np.zeros(len(cloud), dtype=np.int64), np.zeros(len(cloud))
+    found: list[tuple[Sources | None, Array, Array]] = []
+    count = 0
+    for number, view in enumerate(errors.views):
+        mine = np.flatnonzero(cloud.view == number)
+        if not len(mine):
+            found.append((None, np.zeros((0, len(view.motions))), np.zeros((0, int(patch.max()) + 1))))
+            continue
+        _, face = np.unique(part[mine], return_inverse=True)
+        patches, on_patch = np.unique(patch[mine], return_inverse=True)
+        own, towards = view.own(cloud.select(mine)), direction[mine] @ view.pose.rotation
+        sources = Sources.of(own, towards, weights[mine], face, on_patch, view.errors)
+        stretch[mine], share[mine] = sources.stretch + count, sources.share
+        count += len(sources.own)
+        moved = np.hstack([np.cross(cloud.points[mine], direction[mine]), direction[mine]])
+        common = sources.mean(moved) @ view.motions.T
+        common[:, view.columns] += sources.common
+        form = np.zeros((len(sources.own), int(patch.max()) + 1))
+        form[:, patches] = sources.form
+        found.append((sources, common, form))
+    known = [sources for sources, _, _ in found if sources is not None]
+    of_planes = [view.errors.planes_by_cause for view in errors.views]
+    cells = [planes.shape[1] - planes.shape[0] for planes in of_planes]
+    below = [sources.below.sum(axis=1, keepdims=True) for sources in known]
+    return Sources(
+        stretch,
+        share,
+        np.concatenate([sources.own for sources in known]),
+        np.concatenate([sources.of_fan for sources in known]),
+        _apart([None if sources is None else sources.speckle for sources, _, _ in found], cells),
+        _apart([None if one is None else one.sweeps for one, _, _ in found], [len(planes) for planes in of_planes]),
+        np.vstack([common for _, common, _ in found]),
+        np.vstack([form for _, _, form in found]),
+        np.vstack([sources.behind for sources in known]),
+        np.vstack(below),
+        csr_array(
+            sparse_block_diag(
+                [
+                    csr_array((0, len(planes))) if sources is None else sources.on_planes
+                    for (sources, _, _), planes in zip(found, of_planes, strict=True)
+                ],
+                format="csr",
+            )
+        ),
+        np.hstack(
+            [
+                block_diag(*(planes[:, :cell] for planes, cell in zip(of_planes, cells, strict=True))),
+                block_diag(*(planes[:, cell:] for planes, cell in zip(of_planes, cells, strict=True))),
+            ]
+        ),
+        np.array([source in LAWLESS for source in errors.sources] + [False] * len(errors.joint_causes), dtype=np.bool_),
+        np.array(
+            [source in UNMEASURED for source in errors.sources] + [False] * len(errors.joint_causes), dtype=np.bool_
+        ),
+        Cause.JOINT_DEPTH_BIAS,
+    )
+
+
+def _apart(parts: list[Array | None], widths: list[int]) -> Array:
+    """The effects of each view's own causes, as many as `widths` has, in columns of their own; None: it has no rows."""
+    return np.asarray(
+        block_diag(*(np.zeros((0, width)) if part is None else part for part, width in zip(parts, widths, strict=True)))
+    )

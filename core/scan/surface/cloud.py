@@ -39,6 +39,9 @@ class Cloud:
     skewness, spread_mm
         (N,) of the stripe's section: its skewness, positive where the light reaches further away from the camera, and
         its σ in mm of depth. Zero where they are not known (and when left out).
+    view
+        (N,) the view that each point was seen in, of views joined in one frame (`core.views`); 0 of a single one (and
+        when left out). Then `points` and `normals` are in the first view's camera frame, `uv` in the view's picture.
     """
 
     points: Array
@@ -51,6 +54,7 @@ class Cloud:
     sigma_common: Array = field(default_factory=lambda: np.zeros(0))
     skewness: Array = field(default_factory=lambda: np.zeros(0))
     spread_mm: Array = field(default_factory=lambda: np.zeros(0))
+    view: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         count = len(self.points)
@@ -68,7 +72,9 @@ class Cloud:
             ("spread_mm", (count,)),
         ):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
-        for name in ("frame", "sweep"):
+        if not len(self.view):
+            set_field(self, "view", np.zeros(count, dtype=np.int64))
+        for name in ("frame", "sweep", "view"):
             index = np.array(getattr(self, name), dtype=np.int64).reshape(count)
             index.flags.writeable = False
             set_field(self, name, index)
@@ -89,4 +95,5 @@ class Cloud:
             self.sigma_common[keep],
             self.skewness[keep],
             self.spread_mm[keep],
+            self.view[keep],
         )

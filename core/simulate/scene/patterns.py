@@ -13,9 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.compiled import compiled, inlined
+from core.image.targets.coded_rings import CODE_FROM, CODE_TO
 from core.model import Pose
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.rays import Map
+
+SUB = 5
+"""Samples along each side of a pixel that a code ring is drawn by."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -34,6 +38,9 @@ class Pattern:
         (N, 2) centres of round dots on top of the cells, in mm.
     dot_radius, dot_albedo
         Of all dots.
+    rings, codes
+        (R, 2) middles in mm of code rings, and (R, S) which of their sectors are dark: `core.image.targets.coded_rings`
+        of discs of `dot_radius`.
     """
 
     x_edges: Array
@@ -43,6 +50,8 @@ class Pattern:
     dots: Array | None = None
     dot_radius: float = 0.0
     dot_albedo: float = 0.0
+    rings: Array | None = None
+    codes: Array | None = None
 
     def __post_init__(self) -> None:
         set_field(self, "x_edges", frozen_array(self.x_edges, (None,), "x_edges"))
@@ -73,8 +82,12 @@ def draw_pattern(pattern: Pattern, pose_cam_target: Pose, rays: Map) -> tuple[Ma
     points, albedo = _draw_cells(
         pattern.x_edges, pattern.y_edges, padded, pose_cam_target.rotation, pose_cam_target.translation, rays
     )
+    dot = (pattern.dot_radius, pattern.dot_albedo)
+    if pattern.rings is not None and pattern.codes is not None:
+        codes = np.asarray(pattern.codes, dtype=np.bool_)
+        place = pose_cam_target.rotation, pose_cam_target.translation
+        _draw_codes((np.asarray(pattern.rings), codes), (*dot, CODE_FROM, CODE_TO), place, rays, points, albedo)
     if len(dots):
-        dot = (pattern.dot_radius, pattern.dot_albedo)
         _draw_dots(dots, dot, pose_cam_target.rotation, pose_cam_target.translation, rays, points, albedo)
     return points, albedo
 
@@ -169,6 +182,38 @@ def _draw_cells(x_edges, y_edges, cells, rotation, translation, rays):  # type: 
             if x_edges[0] < px < x_edges[-1] and y_edges[0] < py < y_edges[-1]:
                 points[v, u, 0], points[v, u, 1], points[v, u, 2] = z * rays[v, u, 0], z * rays[v, u, 1], z
     return points, albedo
+
+
+@compiled()
+def _draw_codes(coded, dot, place, rays, points, albedo):  # type: ignore[no-untyped-def]
+    """Code rings by SUB × SUB samples a pixel: only their levels are read, no edge of them is measured."""
+    rings, codes = coded
+    radius, dark, code_from, code_to = dot
+    rotation, translation = place
+    height, width = rays.shape[:2]
+    sectors = codes.shape[1]
+    for v in range(height):
+        below = v + 1 if v + 1 < height else v - 1
+        for u in range(width):
+            if points[v, u, 2] == 0:
+                continue
+            px, py, _ = _on_plate(rays[v, u, 0], rays[v, u, 1], rotation, translation)
+            for k in range(len(rings)):
+                x, y = px - rings[k, 0], py - rings[k, 1]
+                if x * x + y * y > (1.2 * code_to * radius) ** 2:
+                    continue
+                right = u + 1 if u + 1 < width else u - 1
+                xu, yu, _ = _on_plate(rays[v, right, 0], rays[v, right, 1], rotation, translation)
+                xv, yv, _ = _on_plate(rays[below, u, 0], rays[below, u, 1], rotation, translation)
+                inked = 0
+                for i in range(SUB * SUB):
+                    a, b = (i % SUB + 0.5) / SUB - 0.5, (i // SUB + 0.5) / SUB - 0.5
+                    sx, sy = x + a * (xu - px) + b * (xv - px), y + a * (yu - py) + b * (yv - py)
+                    from_middle = np.hypot(sx, sy) / radius
+                    if code_from < from_middle < code_to:
+                        sector = int(np.arctan2(sy, sx) / (2 * np.pi) * sectors + sectors) % sectors
+                        inked += codes[k, sector]
+                albedo[v, u] += inked / (SUB * SUB) * (dark - albedo[v, u])
 
 
 @compiled()

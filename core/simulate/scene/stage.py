@@ -12,6 +12,7 @@ from core.model.arrays import Array
 from core.simulate.effects.setup import USUAL_SETUP, Setup
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import PLATES
+from core.simulate.scene.carrier import carrier_boards, pose_carrier_part, pose_table_carrier
 from core.simulate.scene.known_planes import boards_of
 from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl, turned
 from core.simulate.scene.scene import Material, Mesh, Scene, Sphere
@@ -46,7 +47,7 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
     material = _material(scenario, pose)
-    boards = boards_of(scenario, PLATES[scenario.plane_target], pose)
+    boards = (*boards_of(scenario, PLATES[scenario.plane_target], pose), *carrier_boards(scenario, pose))
     scene = Scene.on_table(pose, *things, material=material, boards=boards)
     up = pose.rotation[:, 2]
     figures: dict[str, object] = {"kind": scenario.object, "table_normal": up.tolist()}
@@ -83,6 +84,8 @@ def _material(scenario: Scenario, table: Pose) -> Material:
 def _thing(scenario: Scenario) -> Mesh | Sphere | None:
     """The object in table coordinates, turned on its base and put in its place."""
     yaw, place = np.radians(scenario.yaw_deg), np.array([scenario.right_mm, scenario.away_mm])
+    if scenario.carrier.marks:
+        return gauge_block(scenario.height_mm).moved(pose_table_carrier(scenario) @ pose_carrier_part(scenario))
     if scenario.object == "block":
         return turned(gauge_block(scenario.height_mm), yaw, place)
     if scenario.object == "narrow-block":

@@ -1,0 +1,123 @@
+"""carrier.toml: the reference marks of a carrier, as calibrated, read and written.
+
+kind = "ring"                 # or "ball"
+radius_mm = 3.5               # of the discs, or the certified one of the balls
+scaled_by_target = true       # calibrated by the rig's own plane target
+covariance_mm2 = [[...], ...] # of all coordinates, mark by mark; or u_mm at each mark, if nothing is shared
+
+[[mark]]
+number = 0
+side = "A"
+position_mm = [-85.0, 65.0, 2.0]
+u_mm = [0.003, 0.003, 0.006]
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from core.errors import InputError
+from core.files.atomic import write_text
+from core.files.complaints import checked, fitting
+from core.files.reading import read_toml
+from core.files.recording.rig import Table
+from core.files.tables import Finite, Row3, ShortText
+from core.files.toml_text import toml_text
+from core.messages import Message, label
+from core.model.arrays import Array
+from core.views.carrier import Carrier, MarkKind
+
+_SIDES = "AB"
+_MISSING = Message("views.carrier_missing", "there is no carrier.toml, which says where the carrier's marks are")
+_CALIBRATE = Message(
+    "views.advice_calibrate_carrier", "calibrate the carrier by pictures of both its sides, and put the file there"
+)
+
+
+class _Mark(Table):
+    """A mark."""
+
+    number: int = Field(ge=0, description=label("a whole number from 0"))
+    side: Literal["A", "B"] = "A"
+    position_mm: Row3
+    u_mm: Annotated[Row3, Field(description=label("three lengths in mm"))]
+
+
+class _CarrierTables(Table):
+    """carrier.toml."""
+
+    kind: Literal["ring", "ball"] = "ring"
+    radius_mm: float = Field(gt=0, le=100, allow_inf_nan=False, description=label("a length in mm above 0"))
+    scaled_by_target: bool = True
+    name: ShortText = ""
+    covariance_mm2: list[list[Finite]] = Field(default_factory=list)
+    mark: list[_Mark] = Field(min_length=1)
+
+
+def read_carrier(path: Path) -> Carrier:
+    """Read and check the carrier in a carrier.toml; InputError if it is missing or wrong."""
+    tables = checked(_CarrierTables, read_toml(path, missing=_MISSING, todo=_CALIBRATE), path)
+    marks = tables.mark
+    with fitting(path):
+        return Carrier(
+            np.array([mark.number for mark in marks]),
+            np.array([_SIDES.index(mark.side) for mark in marks]),
+            np.array([mark.position_mm for mark in marks]),
+            _covariance(tables, path),
+            tables.radius_mm,
+            MarkKind(tables.kind),
+            tables.scaled_by_target,
+            tables.name,
+        )
+
+
+def _covariance(tables: _CarrierTables, path: Path) -> Array:
+    """That of the file, or by each mark's own u; InputError if it is none."""
+    own = np.array([mark.u_mm for mark in tables.mark]).ravel()
+    if not tables.covariance_mm2:
+        return np.diag(own**2)
+    rows = tables.covariance_mm2
+    if len(rows) != len(own) or any(len(row) != len(own) for row in rows):
+        raise InputError(
+            Message("views.carrier_covariance_size", "covariance_mm2 is not {n} × {n} for {marks} marks",
+                    n=len(own), marks=len(tables.mark)),
+            where=path,
+            todo=_CALIBRATE,
+        )  # fmt: skip
+    covariance = np.array(rows)
+    smallest = float(np.linalg.eigvalsh((covariance + covariance.T) / 2).min())
+    if not np.allclose(covariance, covariance.T) or smallest < -1e-9 * max(float(np.trace(covariance)), 1e-12):
+        raise InputError(
+            Message("views.no_covariance", "covariance_mm2 is no covariance: it is not symmetric and positive"),
+            where=path,
+            todo=_CALIBRATE,
+        )
+    return covariance
+
+
+def write_carrier(path: Path, carrier: Carrier) -> None:
+    """Write a carrier as a file carrier.toml for `read_carrier`; InputError if it cannot be written."""
+    marks = [
+        {
+            "number": int(number),
+            "side": _SIDES[side],
+            "position_mm": [round(float(value), 6) for value in position],
+            "u_mm": [float(f"{value:.4g}") for value in u],
+        }
+        for number, side, position, u in zip(
+            carrier.numbers, carrier.sides, carrier.positions, carrier.sigma, strict=True
+        )
+    ]
+    tables = {
+        "name": carrier.name,
+        "kind": str(carrier.kind),
+        "radius_mm": carrier.radius_mm,
+        "scaled_by_target": carrier.scaled_by_target,
+        "covariance_mm2": [[float(f"{value:.7g}") for value in row] for row in carrier.covariance],
+        "mark": marks,
+    }
+    write_text(path, toml_text(tables), sync=False)

@@ -1,0 +1,322 @@
+"""What speaks against a joint: its marks, its single marks, the surfaces that two views share.
+
+Each is a number with its uncertainty first; which of them takes away a proof is said by the table of findings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.findings.proof import Doubt, Doubts
+from core.findings.table import note_of
+from core.image.targets.pose import cross_matrices
+from core.messages import Message
+from core.model import Camera
+from core.model.arrays import Array
+from core.views.carrier import MarkKind, second_fit_mm
+from core.views.joined_cloud import JoinedCloud
+from core.views.joint import LEFT_OUT, Joint
+
+CHANCE = 1e-4
+"""Chance of a false alarm that is taken, by each test of one joint."""
+TWO_WAYS = 10.0
+"""The next best way to lay marks without numbers must miss by so many times their uncertainty."""
+NEAR_MM, ALONG = 1.0, 0.8
+"""Points of two views are on one surface if they are this near, and their normals' cosine is at least this."""
+FEWEST_SHARED = 200
+"""Points that two views share, with which the overlap is judged."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairOff:
+    """Two marks of a view whose distance is `mm` larger than calibrated, `z` times its uncertainty."""
+
+    view: str
+    first: int
+    second: int
+    mm: float
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class WithoutMark:
+    """Joint without one mark: it moves by `change_mm` where it counts, of which `u_mm` is explained."""
+
+    view: str
+    number: int
+    change_mm: float
+    u_mm: float
+
+    @property
+    def z(self) -> float:
+        """Change in units of what is explained of it."""
+        return abs(self.change_mm) / max(self.u_mm, 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """What two views show of one surface: how far apart they are, along its normals, with the uncertainty of that.
+
+    `opposed` is the share of the points that meet with normals against each other.
+    """
+
+    first: str
+    second: str
+    points: int
+    mm: float
+    u_mm: float
+    opposed: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class JointCheck:
+    """Check of a joint.
+
+    Parameters
+    ----------
+    chi2, redundancy, chance
+        Of the marks' residuals, and the chance that they are larger.
+    u_mm
+        Standard uncertainty of the joint, by marks and carrier, where and along which it counts.
+    pairs
+        Pairs of marks with the largest z-scores of their distances, one a view.
+    without
+        The joint without each single mark, in the order of the views.
+    overlaps
+        Of views that share surface; () where none do.
+    second_fit_mm
+        By how much the next best way to lay the marks misses; infinite for marks with numbers.
+    """
+
+    joint: Joint
+    chi2: float
+    redundancy: float
+    chance: float
+    u_mm: float
+    pairs: tuple[PairOff, ...]
+    without: tuple[WithoutMark, ...]
+    overlaps: tuple[Overlap, ...] = ()
+    second_fit_mm: float = np.inf
+
+    @property
+    def doubts(self) -> Doubts:
+        """Why the joint proves nothing; what the surfaces say comes first."""
+        notes = [*self._of_overlaps(), *self._of_marks()]
+        return tuple(Doubt.of(note) for note in notes)
+
+    @property
+    def notes(self) -> tuple[Message, ...]:
+        """What else is told of the joint."""
+        notes = []
+        for number, view in enumerate(self.joint.views):
+            gone = self.joint.left_out(number)
+            if len(gone):
+                notes.append(note_of("views.marks_left_out", view=view, n=len(gone), numbers=tuple(map(int, gone))))
+        notes += [
+            note_of("views.pair_off", view=pair.view, first=pair.first, second=pair.second, mm=pair.mm, z=pair.z)
+            for pair in self.pairs
+            if pair.z > _quantile(sum(len(seen) ** 2 for seen in self.joint.seen))
+        ]
+        if not self.overlaps:
+            notes.append(note_of("views.no_overlap"))
+        return tuple(notes)
+
+    def _of_overlaps(self) -> list[Message]:
+        found = []
+        for one in self.overlaps:
+            if one.opposed > 0.5:
+                found.append(note_of("views.normals_opposed", first=one.first, second=one.second))
+            elif abs(one.mm) > _quantile(len(self.overlaps)) * one.u_mm:
+                found.append(
+                    note_of("views.overlap_disagrees", first=one.first, second=one.second, mm=one.mm, u_mm=one.u_mm)
+                )
+        return found
+
+    def _of_marks(self) -> list[Message]:
+        found, joint = [], self.joint
+        if self.chance < CHANCE:
+            used = [
+                np.where(w >= LEFT_OUT, np.linalg.norm(r, axis=1), 0.0)
+                for w, r in zip(joint.weights, joint.residuals, strict=True)
+            ]
+            view = int(np.argmax([px.max() for px in used]))
+            worst = int(np.argmax(used[view]))
+            found.append(
+                note_of(
+                    "views.marks_disagree",
+                    times=joint.scale,
+                    px=float(used[view][worst]),
+                    number=int(joint.seen[view].numbers[worst]),
+                    view=joint.views[view],
+                )
+            )
+        matter = (one for one in self.without if abs(one.change_mm) > self.u_mm)
+        worst_one = max(matter, key=lambda one: one.z, default=None)
+        if worst_one is not None and worst_one.z > _quantile(len(self.without)):
+            found.append(
+                note_of(
+                    "views.hangs_on_one_mark",
+                    view=worst_one.view,
+                    number=worst_one.number,
+                    mm=worst_one.change_mm,
+                    u_mm=worst_one.u_mm,
+                )
+            )
+        if joint.carrier.kind is MarkKind.BALL and self.second_fit_mm < TWO_WAYS * float(joint.carrier.sigma.max()):
+            found.append(note_of("views.two_ways", mm=self.second_fit_mm))
+        return found
+
+
+def check_joint(joint: Joint, camera: Camera, at: Array, along: Array, overlaps: Sequence[Overlap] = ()) -> JointCheck:
+    """Look for what speaks against a joint.
+
+    Parameters
+    ----------
+    joint, camera
+        The joint, and the camera of its views.
+    at, along
+        (3,) the place in mm and the unit direction, in the first view's camera frame, in which the joint counts.
+    overlaps
+        What `overlaps_of` found.
+    """
+    from scipy.stats import chi2
+
+    by_motion = along @ np.hstack([-cross_matrices(at[None])[0], np.eye(3)])
+    u_mm = float(np.sqrt(by_motion @ joint.covariance(len(joint.views) - 1) @ by_motion))
+    second = second_fit_mm(joint.carrier) if joint.carrier.kind is MarkKind.BALL else np.inf
+    return JointCheck(
+        joint,
+        joint.chi2,
+        joint.redundancy,
+        float(chi2.sf(joint.chi2, max(joint.redundancy, 1.0))),
+        u_mm,
+        tuple(_worst_pair(joint, camera, view) for view in range(len(joint.views))),
+        tuple(_without_each(joint, by_motion)),
+        tuple(overlaps),
+        float(second),
+    )
+
+
+def _quantile(tests: int) -> float:
+    """What a normal quantity exceeds by CHANCE in one of so many tests, on either side."""
+    from scipy.stats import norm
+
+    return float(norm.isf(CHANCE / (2 * max(tests, 1))))
+
+
+def _worst_pair(joint: Joint, camera: Camera, view: int) -> PairOff:
+    """The two marks of a view whose distance, where their centres are seen on the carrier, is off most."""
+    carrier, seen, pose = joint.carrier, joint.seen[view], joint.poses[view]
+    index = carrier.index_of(seen.numbers)
+    off = _off_mm(joint, camera, view)
+    places = carrier.positions[index]
+    first, second = np.triu_indices(len(index), 1)
+    apart = places[first] - places[second]
+    unit = apart / np.linalg.norm(apart, axis=1, keepdims=True)
+    change = np.einsum("ni,ni->n", unit, off[first] - off[second])
+    depth = pose.apply(places)[:, 2]
+    noise = (np.sqrt(seen.covariance[:, 0, 0]) * joint.scale * depth / camera.focal) ** 2
+    blocks = carrier.covariance.reshape(len(carrier), 3, len(carrier), 3)
+
+    def known(a: NDArray[np.intp], b: NDArray[np.intp]) -> Array:
+        return np.asarray(np.einsum("ni,nij,nj->n", unit, blocks[index[a], :, index[b], :], unit))
+
+    variance = noise[first] + noise[second] + known(first, first) + known(second, second) - 2 * known(first, second)
+    z = np.abs(change) / np.sqrt(variance)
+    worst = int(np.argmax(z))
+    numbers = seen.numbers
+    return PairOff(
+        joint.views[view],
+        int(numbers[first[worst]]),
+        int(numbers[second[worst]]),
+        float(change[worst]),
+        float(z[worst]),
+    )
+
+
+def _off_mm(joint: Joint, camera: Camera, view: int) -> Array:
+    """(n, 3) in mm how far beside its calibrated place, in the carrier's plane, each mark of a view is seen."""
+    pose, index = joint.poses[view], joint.carrier.index_of(joint.seen[view].numbers)
+    places = joint.carrier.positions[index]
+    uv = camera.project_pose(pose, places)
+    step = 0.01
+    by_x, by_y = (camera.project_pose(pose, places + step * axis) - uv for axis in np.eye(3)[:2])
+    slopes = np.stack([by_x, by_y], axis=2) / step
+    flat = np.linalg.solve(slopes, joint.residuals[view][..., None])[..., 0]
+    return np.column_stack([flat, np.zeros(len(flat))])
+
+
+def _without_each(joint: Joint, by_motion: Array) -> list[WithoutMark]:
+    """The joint of the last view to the first without each mark that is used, along `by_motion` (6,)."""
+    by_carrier = by_motion @ joint.motion_of(len(joint.views) - 1)
+    names = [(view, int(number)) for view, seen in zip(joint.views, joint.seen, strict=True) for number in seen.numbers]
+    changes, roots = joint.without @ by_carrier, np.einsum("i,mij->mj", by_carrier, joint.grown)
+    return [
+        WithoutMark(view, number, float(change), float(np.linalg.norm(root)))
+        for (view, number), change, root, weight in zip(
+            names, changes, roots, np.concatenate(joint.weights), strict=True
+        )
+        if weight >= LEFT_OUT
+    ]
+
+
+def overlaps_of(joined: JoinedCloud) -> list[Overlap]:
+    """Compare what each two views show of one surface of the part or its carrier.
+
+    Points below the carrier are left out: the table does not move along.
+    """
+    on_part = _on_part(joined)
+    views, found = range(len(joined.joint.views)), []
+    for first in views:
+        for second in range(first + 1, len(views)):
+            overlap = _overlap(joined, on_part, first, second)
+            if overlap is not None:
+                found.append(overlap)
+    return found
+
+
+def _on_part(joined: JoinedCloud) -> NDArray[np.bool_]:
+    """Which points (N,) lie within reach of the carrier's marks and on the camera's side of its far face."""
+    carrier, joint = joined.joint.carrier, joined.joint
+    reach = np.abs(carrier.positions[:, :2]).max(axis=0)
+    kept = np.zeros(len(joined.cloud), dtype=np.bool_)
+    for number, view in enumerate(joined.errors.views):
+        mine = np.flatnonzero(joined.cloud.view == number)
+        pose = joint.poses[number]
+        side = -np.sign(pose.rotation[2, 2])
+        own = pose.inverse().apply(view.pose.inverse().apply(joined.cloud.points[mine]))
+        lowest = float((carrier.positions[:, 2] * side).min())
+        kept[mine] = (np.abs(own[:, :2]) <= reach).all(axis=1) & (own[:, 2] * side > lowest - NEAR_MM)
+    return kept
+
+
+def _overlap(joined: JoinedCloud, on_part: NDArray[np.bool_], first: int, second: int) -> Overlap | None:
+    cloud = joined.cloud
+    known = on_part & (np.linalg.norm(cloud.normals, axis=1) > 0.5)
+    a, b = (np.flatnonzero(known & (cloud.view == view)) for view in (first, second))
+    if min(len(a), len(b)) < FEWEST_SHARED:
+        return None
+    found = cKDTree(cloud.points[a]).query(cloud.points[b], distance_upper_bound=NEAR_MM)
+    distance, nearest = np.asarray(found[0]), np.asarray(found[1])
+    met = np.isfinite(distance)
+    ours, theirs = a[nearest[met]], b[met]
+    cosine = np.einsum("ni,ni->n", cloud.normals[ours], cloud.normals[theirs])
+    shared = np.abs(cosine) >= ALONG
+    if np.count_nonzero(shared) < FEWEST_SHARED:
+        return None
+    ours, theirs, cosine = ours[shared], theirs[shared], cosine[shared]
+    names = joined.joint.views[first], joined.joint.views[second]
+    opposed = float(np.mean(cosine < 0))
+    normals = cloud.normals[ours]
+    apart = np.einsum("ni,ni->n", normals, cloud.points[theirs] - cloud.points[ours])
+    columns = [joined.errors.views[view].motions for view in (first, second)]
+    lever = np.hstack([np.cross(cloud.points[theirs], normals), normals]).mean(axis=0)
+    by_joint = float(np.linalg.norm(lever @ (columns[1] - columns[0]).T))
+    sweeps = max(len(np.unique(cloud.sweep[theirs])), 1)
+    scatter = 1.2533 * float(np.median(np.abs(apart - np.median(apart)))) * 1.4826 / np.sqrt(sweeps)
+    return Overlap(*names, len(ours), float(np.median(apart)), float(np.hypot(by_joint, scatter)), opposed)

@@ -1,0 +1,128 @@
+"""Points of two views in one frame: what errs in both at once adds up in the thickness between them."""
+
+import numpy as np
+import pytest
+
+from core.calibrate.deviations import Deviation, moved_fan
+from core.inspect.causes import Cause
+from core.inspect.faces import FacePair
+from core.inspect.uncertainty.error_sources import Sources
+from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.model import Pose
+from core.scan.common_errors import CommonErrors
+from core.scan.surface.cloud import FAN, Cloud
+from core.simulate.rig import pencil_fan
+from core.views.joined_cloud import View, join_clouds
+from core.views.joint import join
+from core.views.thickness import require_turned, thickness_across
+from tests.views.made import CAMERA, both_seen, carrier, exact, seen_in
+
+DEPTH, HALF = 510.0, 25.0
+"""Of the face that each view shows, and half the thickness: the carrier is amid the part."""
+SCALE = 2e-5
+"""By which a displaced fan sees everything farther away."""
+UP = np.diag([1.0, -1.0, -1.0])
+POSES = Pose(UP, np.array([0.0, 50.0, DEPTH + HALF])), Pose(np.eye(3), np.array([0.0, 50.0, DEPTH + HALF]))
+
+
+def face(sigma=0.01, seed=0):
+    """A face square to the view at DEPTH, where the fan's lines meet it."""
+    points, line = [], []
+    for k, pi in enumerate(pencil_fan().pis):
+        x = np.linspace(-30, 30, 120)
+        points.append(np.column_stack([x, (1 - pi[0] * x - pi[2] * DEPTH) / pi[1], np.full_like(x, DEPTH)]))
+        line.append(np.full(len(x), FAN - k))
+    points = np.concatenate(points)
+    depth = DEPTH + sigma * np.random.default_rng(seed).standard_normal(len(points))
+    uv, ones = CAMERA.project(points), np.ones(len(points))
+    points *= (depth / DEPTH)[:, None]
+    frame = np.full(len(points), -1)
+    return Cloud(
+        points, uv, sigma * ones, 100 * ones, frame, np.concatenate(line), np.tile([0.0, 0, -1], (len(points), 1))
+    )
+
+
+def errors():
+    fan = pencil_fan()
+    larger = Deviation("fan", CAMERA, moved_fan(fan, -SCALE * fan.pis.ravel()))
+    return PointErrors(common=CommonErrors.of_fan(CAMERA, fan, [larger]), swept=False, part=Part(material="metal"))
+
+
+@pytest.fixture(scope="module")
+def joined():
+    known = exact(carrier())
+    rng = np.random.default_rng(3)
+    seen = [
+        seen_in(known, pose, side, rng, name)
+        for side, (pose, name) in enumerate(zip(POSES, ("scan", "turned"), strict=True))
+    ]
+    joint = join(known, seen, CAMERA)
+    return join_clouds(joint, [View("scan", face(), errors()), View("turned", face(seed=1), errors())])
+
+
+def across(joined):
+    views = joined.cloud.view
+    return thickness_across(joined, faces=FacePair(np.flatnonzero(views == 0), np.flatnonzero(views == 1)))
+
+
+def test_the_thickness_goes_from_a_face_of_one_view_to_a_face_of_the_other(joined):
+    gauge = across(joined)
+    assert gauge.thickness_mm == pytest.approx(2 * HALF, abs=gauge.U_mm)
+    assert 0.005 < gauge.u_mm < 0.04
+
+
+def test_what_the_fan_sees_too_far_in_both_views_counts_twice_not_by_chance(joined):
+    rows = {row.source: row.u_mm for row in across(joined).budget}
+    assert rows[Cause.FAN_CALIBRATION] == pytest.approx(2 * SCALE * DEPTH, rel=0.02)
+
+
+def test_the_joint_has_rows_of_its_own_in_the_budget(joined):
+    rows = {row.source: row.u_mm for row in across(joined).budget}
+    along = np.array([0.0, 0, 1])
+    at = np.array([0.0, 50.0, DEPTH + HALF])
+    by_motion = along @ np.hstack([[[0, at[2], -at[1]], [-at[2], 0, at[0]], [at[1], -at[0], 0]], np.eye(3)])
+    u = float(np.sqrt(by_motion @ joined.joint.covariance(1) @ by_motion))
+    assert np.hypot(rows[Cause.JOINT_MARKS], rows[Cause.JOINT_CARRIER]) == pytest.approx(u, rel=0.3)
+
+
+def test_matter_that_lets_light_in_counts_twice_linearly():
+    known = exact(carrier())
+    rng = np.random.default_rng(3)
+    joint = join(known, [seen_in(known, pose, side, rng, str(side)) for side, pose in enumerate(POSES)], CAMERA)
+    from dataclasses import replace
+
+    plastic = replace(errors(), part=Part(material="plastic"))
+    both = join_clouds(joint, [View("scan", face(), plastic), View("turned", face(seed=1), plastic)])
+    views = both.cloud.view
+    direction = np.where(views[:, None] == 0, [0.0, 0, -1], [0.0, 0, 1])
+    sources = Sources.of(both.cloud, direction, np.ones(len(views)), views, views, both.errors)
+    assert sources.below.shape[1] == 1
+    of_first = sources.stretch[views == 0].max() + 1
+    assert np.sign(sources.below[:of_first]).max() == np.sign(sources.below[of_first:]).max()
+
+
+def test_every_point_says_its_view_and_what_it_has_in_common_with_the_others(joined):
+    cloud = joined.cloud
+    assert np.bincount(cloud.view).tolist() == [360, 360]
+    assert cloud.sigma_common[cloud.view == 0] == pytest.approx(SCALE * DEPTH, rel=0.1)
+    assert (cloud.sigma_common[cloud.view == 1] > 1.05 * SCALE * DEPTH).all()
+    assert len(set(cloud.sweep[cloud.view == 0]) & set(cloud.sweep[cloud.view == 1])) == 0
+
+
+def test_one_view_by_itself_errs_as_its_scan_does(joined):
+    mine = np.flatnonzero(joined.cloud.view == 0)
+    cloud, direction = joined.cloud.select(mine), np.array([0.0, 0.0, -1.0])
+    part = np.zeros(len(cloud), dtype=np.int64)
+    alone = Sources.of(cloud, direction, np.ones(len(cloud)), part, part, errors())
+    among = Sources.of(cloud, direction, np.ones(len(cloud)), part, part, joined.errors)
+    assert among.own == pytest.approx(alone.own)
+    assert among.common[:, :1] == pytest.approx(alone.common)
+    assert np.abs(among.common[:, 1:]).max() < 1e-15
+
+
+def test_two_views_of_the_same_side_have_no_thickness_between_them():
+    known = carrier()
+    first, _ = both_seen(known)
+    with pytest.raises(Exception, match="shows side A of the carrier, as the first view does"):
+        require_turned(join(known, (first, first), CAMERA))

@@ -1,0 +1,138 @@
+"""What speaks against a joint: told, or the error of the joint is within its U."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.image.targets.pose import cross_matrices
+from core.views.carrier import Carrier, MarkKind, fits_of, second_fit_mm
+from core.views.joint import join
+from core.views.joint_check import Overlap, check_joint
+from core.views.marks_seen import MarksSeen
+from tests.views.made import CAMERA, both_seen, carrier, exact, poses, seen_in
+
+AT, ALONG = np.array([0.0, 50.0, 535.0]), np.array([0.0, 0.0, -1.0])
+BY_MOTION = ALONG @ np.hstack([-cross_matrices(AT[None])[0], np.eye(3)])
+SHARED = Overlap("scan", "turned", 5000, 0.004, 0.01, 0.0)
+
+
+def checked(known, seen, seed=0, overlaps=(SHARED,)):
+    joint = join(known, seen, CAMERA)
+    first, second = poses(seed)
+    error = float(((joint.pose(1) @ (first @ second.inverse()).inverse()).apply(AT[None])[0] - AT) @ ALONG)
+    u = float(np.sqrt(BY_MOTION @ joint.covariance(1) @ BY_MOTION))
+    return check_joint(joint, CAMERA, AT, ALONG, overlaps), error, u
+
+
+def told(check):
+    return {doubt.fact for doubt in check.doubts} | {note.code for note in check.notes}
+
+
+def hurt(known, seed, change):
+    """Both views of a carrier whose true positions `change` has changed since it was calibrated."""
+    rng, true, (first, second) = np.random.default_rng(seed + 100), exact(known), poses(seed)
+    true = replace(true, positions=change(true.positions.copy()))
+    return seen_in(true, first, 0, rng, "scan"), seen_in(true, second, 1, rng, "turned")
+
+
+def test_of_rigs_in_order_nothing_is_told():
+    for seed in range(12):
+        known = carrier(seed)
+        check, _, _ = checked(known, both_seen(known, seed), seed)
+        assert told(check) == set()
+
+
+def bent(positions):
+    positions[:, 2] += 0.1 * (positions[:, 0] / 104) ** 2
+    return positions
+
+
+def moved(positions):
+    positions[15, 0] += 0.2
+    return positions
+
+
+def lifted(positions):
+    positions[15, 2] += 0.2
+    return positions
+
+
+@pytest.mark.parametrize("change", [bent, moved, lifted], ids=lambda one: one.__name__)
+def test_what_a_hurt_carrier_does_is_told_or_within_U(change):
+    for seed in range(12):
+        known = carrier(seed)
+        check, error, u = checked(known, hurt(known, seed, change), seed)
+        _, without, _ = checked(known, both_seen(known, seed), seed)
+        assert told(check) or abs(error - without) <= 2 * u, (seed, error, without, u)
+
+
+def test_a_mark_that_was_moved_is_named():
+    known = carrier()
+    check, error, u = checked(known, hurt(known, 0, moved))
+    (note,) = [note for note in check.notes if note.code == "views.marks_left_out"]
+    assert note.values["numbers"] == (15,)
+    assert abs(error) <= 2 * u
+
+
+def test_all_marks_of_a_side_moved_against_the_other_are_not_seen_by_marks_alone():
+    """Why the carrier's calibration states how its sides lie to each other, and why an overlap matters."""
+
+    def shifted(positions):
+        positions[12:, 2] += 0.1
+        return positions
+
+    known = carrier()
+    assert told(checked(known, hurt(known, 0, shifted))[0]) == set()
+
+
+def test_an_overlap_that_disagrees_is_said_first_and_proves_nothing():
+    known = carrier()
+    seen = hurt(known, 0, lambda positions: positions + 3 * np.random.default_rng(2).normal(0, 0.1, positions.shape))
+    check, _, _ = checked(known, seen, overlaps=(replace(SHARED, mm=0.1),))
+    assert [doubt.fact for doubt in check.doubts][:2] == ["overlap_disagrees", "marks_disagree"]
+
+
+def test_surfaces_that_face_each_other_are_told():
+    known = carrier()
+    check, _, _ = checked(known, both_seen(known), overlaps=(replace(SHARED, opposed=0.9),))
+    assert [doubt.fact for doubt in check.doubts] == ["joint_inside_out"]
+
+
+def test_without_an_overlap_it_is_said_that_nothing_shows_a_slip():
+    known = carrier()
+    assert told(checked(known, both_seen(known), overlaps=())[0]) == {"views.no_overlap"}
+
+
+def balls(positions):
+    count = len(positions)
+    return Carrier(np.arange(count), np.zeros(count, int), positions, 1e-4 * np.eye(3 * count), 5.0, MarkKind.BALL)
+
+
+def test_a_symmetric_layout_of_balls_fits_two_ways_and_an_uneven_one_does_not():
+    square = np.array([[-60.0, -60, 0], [60, -60, 0], [60, 60, 0], [-60, 60, 0]])
+    assert second_fit_mm(balls(square)) < 1e-6
+    uneven = square + np.array([[0, 0, 0], [5, -11, 0], [17, 3, 8], [-2, 9, 0]])
+    assert second_fit_mm(balls(uneven)) > 1.0
+
+
+def test_marks_without_numbers_are_laid_on_the_carrier_as_they_lie():
+    rng = np.random.default_rng(4)
+    positions = rng.uniform(-80, 80, (6, 3))
+    order = rng.permutation(6)[:5]
+    pose = poses()[0]
+    (best, *_) = fits_of(pose.apply(positions[order]) + rng.normal(0, 0.01, (5, 3)), positions, 0.2)
+    assert best.marks == tuple(order)
+    assert best.rms_mm < 0.05
+
+
+def test_a_view_of_marks_elsewhere_is_a_pair_off():
+    known = carrier()
+    first, second = both_seen(known)
+    uv = second.uv.copy()
+    uv[2:4] += [[0.25, 0.1], [-0.25, 0.1]]
+    check, _, _ = checked(known, (first, MarksSeen(second.numbers, uv, second.covariance, "turned")))
+    assert told(check)
+    worst = max(check.pairs, key=lambda pair: pair.z)
+    assert worst.view == "turned"
+    assert worst.z > 4
