@@ -12,13 +12,14 @@ from core.cli.options import one_of
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
 from core.files.recording.carrier_file import write_carrier
-from core.files.recording.rig import known_planes_to_toml, read_rig, require_tables
+from core.files.recording.rig import default_rig, known_planes_to_toml, read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
+from core.pipeline.project.corner import write_corner_sheets
 from core.pipeline.steps.prints import write_quick_card
 from core.report.carrier_sheet import carrier_on, carrier_sheets
-from core.report.corner_sheet import CornerKind, corner_of_boards, corner_sheets
+from core.report.corner_sheet import CornerKind
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
 from core.report.wording import target_in_words
@@ -73,10 +74,7 @@ def write_corner(board: str, paper: str, out: Path) -> str:
     """Write a PDF with the sheets of a corner's two boards to the file `out`; return what rig.toml states of them."""
     kind = cast(CornerKind, one_of(board, CORNER_KINDS, "--board"))
     name = _paper(paper)
-    stated = corner_of_boards(kind, name)
-    tables = known_planes_to_toml(stated)
-    write_bytes(out, corner_sheets({one: board.target for one, board in stated.items()}, name, tables))
-    return tables
+    return known_planes_to_toml(write_corner_sheets(default_rig(), name, out, kind).known_planes)
 
 
 def write_carrier_sheets(paper: str, out: Path) -> Path:

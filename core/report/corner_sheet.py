@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
 
-from core.files.atomic import write_bytes
-from core.files.recording.rig import KnownPlaneTarget, Rig, known_planes_to_toml
 from core.image.targets import Charuco, Rectangle, Target
 from core.messages import label
 from core.report.layout.style import MUTED, SANS, color, prepare_reportlab
@@ -83,15 +79,6 @@ def corner_targets(kind: CornerKind, paper: SheetPaper) -> dict[str, Target]:
     return {
         name: Charuco(columns, rows, SQUARE_MM, MARKER_SHARE * SQUARE_MM, DICTIONARY, number * markers)
         for number, name in enumerate(BOARDS)
-    }
-
-
-def corner_of_boards(kind: CornerKind, paper: SheetPaper) -> dict[str, KnownPlaneTarget]:
-    """State the boards of a corner printed on sheets of `paper`: one print, so one error of size."""
-    targets = corner_targets(kind, paper)
-    first = next(iter(targets))
-    return {
-        name: KnownPlaneTarget(target, print_of=None if name == first else first) for name, target in targets.items()
     }
 
 
@@ -167,17 +154,3 @@ def _draw_steps(canvas: Any, paper: SheetPaper, tables: str, further: tuple[str,
     text.setLeading(11)
     text.textLines(tables)
     canvas.drawText(text)
-
-
-def write_corner_sheets(rig: Rig, paper: SheetPaper, out: Path) -> Rig:
-    """Write the sheets of a ChArUco corner to the PDF `out`, and return the `rig` with its boards stated.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written.
-    """
-    stated = corner_of_boards("charuco", paper)
-    sheets = corner_sheets({name: board.target for name, board in stated.items()}, paper, known_planes_to_toml(stated))
-    write_bytes(out, sheets)
-    return replace(rig, known_planes=stated)

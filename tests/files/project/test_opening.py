@@ -182,7 +182,8 @@ def test_the_file_is_for_people_too(tmp_path):
     tables = json.loads(text)
     assert list(tables) == [
         "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
-        "repeats", "report", "inspection", "studies", "artefacts", "callouts", "results",
+        "repeats", "report", "inspection", "studies", "artefacts", "callouts", "plate_beside",
+        "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]
@@ -334,7 +335,7 @@ def test_a_project_from_before_places_of_callouts_were_kept_has_none(tmp_path):
     tables["schema_version"] = 11
     del tables["callouts"]
     (tmp_path / "project.json").write_text(json.dumps(tables))
-    assert read_project(tmp_path).project == replace(full_project(), callouts={})
+    assert read_project(tmp_path).project == replace(full_project(), plate_beside=True, callouts={})
 
 
 def test_results_of_a_project_from_before_they_had_the_names_of_the_steps_are_known_by_these(tmp_path):
