@@ -83,6 +83,7 @@ def full_project():
         (KeptStudy("c0ffee012345", "grr", Message("study.title_grr", "{parts} parts", parts=3), False),),
         (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1), "sphere", "Lab 4"),),
         {"ball Ø": (40.0, -70.5)},
+        plate_beside=True,
     )  # fmt: skip
 
 
@@ -335,7 +336,7 @@ def test_a_project_from_before_places_of_callouts_were_kept_has_none(tmp_path):
     tables["schema_version"] = 11
     del tables["callouts"]
     (tmp_path / "project.json").write_text(json.dumps(tables))
-    assert read_project(tmp_path).project == replace(full_project(), plate_beside=True, callouts={})
+    assert read_project(tmp_path).project == replace(full_project(), callouts={})
 
 
 def test_results_of_a_project_from_before_they_had_the_names_of_the_steps_are_known_by_these(tmp_path):
