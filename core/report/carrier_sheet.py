@@ -26,8 +26,8 @@ _ARC_STEPS = 6
 TITLE = label("Carrier, side {side}, on {paper}")
 STEPS = label(
     "Print both sheets at 100 %, and measure the rulers: each must be 100.0 mm long. Glue them on both sides of a "
-    "stiff plate of 4 mm, edge to edge with the rulers together, and cut out a window for the part. Then calibrate "
-    "the carrier: until then its marks are uncertain by what printing and gluing leave."
+    "stiff plate of 4 mm, edge to edge with the rulers together, and cut out a window for the part. Then have "
+    "the marks measured: until then they are uncertain by what printing and gluing leave."
 )
 
 

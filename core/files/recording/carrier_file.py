@@ -34,7 +34,7 @@ from core.views.carrier import Carrier, MarkKind
 _SIDES = "AB"
 _MISSING = Message("views.carrier_missing", "there is no carrier.toml, which says where the carrier's marks are")
 _CALIBRATE = Message(
-    "views.advice_calibrate_carrier", "calibrate the carrier by pictures of both its sides, and put the file there"
+    "views.advice_calibrate_carrier", "have the marks on both sides of the carrier measured, and put the file there"
 )
 
 

@@ -169,17 +169,19 @@ def _read(picture: Picture, ellipse: Ellipse) -> int | None:
     circle = np.column_stack([np.cos(angle), np.sin(angle)]) @ ellipse.shape.T
     size = float(np.linalg.norm(circle, axis=1).max())
     spline = PictureSpline(picture, ellipse.centre[None], LIGHT_TO * size + 2)
-    radii = np.array([0.0, 0.4, 1.6, 2.3, 2.45, 2.6, 3.05])
+    radii = np.array([0.0, 0.4, 0.75, 1.25, 1.6, 2.3, 2.45, 2.6, 3.05])
     levels = spline.at(ellipse.centre + radii[:, None, None] * circle)
     if not np.isfinite(levels).all():
         return None
-    dark, light = float(np.median(levels[:2])), float(np.median(levels[[2, 6]]))
+    dark, light = float(np.median(levels[:2])), float(np.median(levels[[4, 8]]))
     if light - dark < 4:
         return None
-    inner, outer = ((np.median(levels[row]) - dark) / (light - dark) for row in (2, 6))
-    if min(inner, outer) < 0.75:
+    every = (levels - dark) / (light - dark)
+    if min(np.median(every[4]), np.median(every[8])) < 0.75:
         return None
-    relative = (levels[3:6] - dark) / (light - dark)
+    if every[:3].max() > 0.5 or every[3:5].max() > TOO_BRIGHT:  # a stripe over the disc or its rim draws it aside
+        return None
+    relative = every[5:8]
     level = np.where(relative < TOO_BRIGHT, relative, np.nan)
     best: tuple[float, int | None] = (0.0, None)
     for phase in range(_SAMPLES):
