@@ -21,7 +21,7 @@ OUT    ?= out
 TESTS_AT_ONCE  ?= 3
 PROOFS_AT_ONCE ?= 2
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
-# Modules are handed out in the order tests/conftest.py puts them into: long ones first, by tests/durations.txt.
+# Where they are handed out, modules are so in the order tests/conftest.py puts them into: long ones first, by tests/durations.txt.
 AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 SIDE_BY_SIDE := -n $(TESTS_AT_ONCE) $(AS_MODULES)
 
@@ -49,7 +49,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test rewritten offscreen beside below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
+.PHONY: demo app test beside below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -63,15 +63,13 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
 	@TRISECT_MADE_ONCE=$$(mktemp -d) && export TRISECT_MADE_ONCE && trap 'rm -rf "$$TRISECT_MADE_ONCE"' EXIT && trap 'exit 130' INT TERM; \
 	$(if $(VIRTUAL_SCREEN),,echo "Xvfb is not installed: windows are tested without a screen only";) \
-	$(MAKE) --no-print-directory -j3 beside $(if $(VIRTUAL_SCREEN),on_screen) offscreen
+	$(MAKE) --no-print-directory -j$(words beside on_screen $(PARTS)) beside $(if $(VIRTUAL_SCREEN),on_screen) $(PARTS)
 
-# pytest compiles modules of tests itself: on a fresh checkout one process does, not each of those that run them. What
-# cannot be imported is told by these.
-rewritten: $(READY)
-	@find tests -name '*-pytest-*.pyc' -print -quit | grep -q . || QT_QPA_PLATFORM=offscreen $(BIN)/pytest -q -n 0 --collect-only > /dev/null || true
-
-offscreen: compile rewritten
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(if $(VIRTUAL_SCREEN),$(SCREEN_ONLY:%=--ignore=%))
+# Each process imports the modules of its own part only, by tests/durations.txt; the first one tells as it goes.
+PARTS := $(addprefix offscreen_,$(shell seq $(TESTS_AT_ONCE)))
+$(PARTS): offscreen_%: compile
+	@( set -x; QT_QPA_PLATFORM=offscreen $(BIN)/pytest --part $*/$(TESTS_AT_ONCE) $(if $(VIRTUAL_SCREEN),$(SCREEN_ONLY:%=--ignore=%)) ) \
+	$(if $(filter 1,$*),,$(IN_ONE_PIECE))
 
 # What is checked without tests: each of it keeps one core busy, so it fills the time in which tests wait. They have to
 # be in time in what they do by the clock, so they come first.
@@ -90,7 +88,7 @@ touched_below_workbench: imports ## every module imported; those tests that name
 imports: $(READY)         ## import every module of the program
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m tests.imports
 
-on_screen: compile rewritten
+on_screen: compile
 	@( set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY) ) $(IN_ONE_PIECE)
 
 examples: compile         ## those in the code's documentation and in the manual

@@ -17,6 +17,7 @@ from tests import code, durations
 from tests.shared import SAID_ALOUD, made_once
 
 _TESTS = itertools.count()
+_PART = pytest.StashKey[set[str]]()
 _TEST = re.compile(r"^(?:def test_|class Test)", re.MULTILINE)
 _PROOF = re.compile(r"^@pytest\.mark\.accuracy$", re.MULTILINE)
 _ALL_PROOFS = re.compile(r"^pytestmark = .*mark\.accuracy", re.MULTILINE)
@@ -24,6 +25,9 @@ _ALL_PROOFS = re.compile(r"^pytestmark = .*mark\.accuracy", re.MULTILINE)
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Tests in another order, so that what one leaves behind is found by the next."""
+    parser.addoption(
+        "--part", metavar="I/N", help="the modules of one of N parts that take alike; no other is imported"
+    )
     parser.addoption("--shuffled", type=int, metavar="SEED", help="modules, and tests within them, in a random order")
 
 
@@ -72,7 +76,19 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
         text = collection_path.read_text(encoding="utf-8")
         if _ALL_PROOFS.search(text) or 0 < len(_TEST.findall(text)) == len(_PROOF.findall(text)):
             return True
-    return None
+    return True if collection_path.match("test_*.py") and _in_another_part(collection_path, config) else None
+
+
+def _in_another_part(path: Path, config: pytest.Config) -> bool:
+    """Whether another process of `make test` runs a module: to import all takes each of them half a minute."""
+    part = config.getoption("part")
+    if not part:
+        return False
+    if _PART not in config.stash:
+        ignored = {Path(one) for one in config.option.ignore or ()}
+        files = (one.relative_to(config.rootpath) for one in (config.rootpath / "tests").rglob("test_*.py"))
+        config.stash[_PART] = durations.part_of((one.as_posix() for one in files if one not in ignored), part)
+    return path.relative_to(config.rootpath).as_posix() not in config.stash[_PART]
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -87,8 +103,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if config.option.markexpr == "accuracy":
         return
     seconds = durations.read()
-    usual = 1.0  # of a module that nobody has measured: among the short ones
-    items.sort(key=lambda item: -seconds.get(item.path.relative_to(config.rootpath).as_posix(), usual))
+    items.sort(key=lambda item: -seconds.get(item.path.relative_to(config.rootpath).as_posix(), durations.USUAL_S))
 
 
 def _shuffle(items: list[pytest.Item], chance: random.Random) -> None:

@@ -1,5 +1,7 @@
 """Modules are handed out by what they took: the longest first."""
 
+import pytest
+
 from tests import durations
 from tests.changed import PROVEN
 from tests.code import ROOT
@@ -15,6 +17,16 @@ def test_what_has_run_replaces_what_is_known_of_it_and_what_is_short_or_gone_has
     assert file.read_text() == "30 tests/test_a.py\n4 tests/test_b.py\n"
     durations.write({"tests/test_b.py": 1.0, "tests/test_c.py": 50.0}, file)
     assert list(durations.read(file)) == ["tests/test_c.py", "tests/test_a.py"]
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_parts_take_alike_and_have_each_module_once(count):
+    took = {"a": 30.0, "b": 20.0, "c": 11.0, "d": 9.0}
+    modules = [*took, *"efghij"]
+    parts = [durations.part_of(modules, f"{number + 1}/{count}", took) for number in range(count)]
+    assert sorted(one for part in parts for one in part) == sorted(modules)
+    long = [sum(took.get(one, durations.USUAL_S) for one in part) for part in parts]
+    assert max(long) == max(30.0, sum(long) / count), "the longest module alone is as long as the others together"
 
 
 def test_every_module_that_has_a_line_is_there():
