@@ -341,7 +341,7 @@ class MainWindow(QMainWindow):
             "messages": self._toggle_messages,
             "manual": self._open_manual,
             "first measurement": projects.begin_first_measurement,
-            "first measurement without fan": projects.begin_first_measurement_without_fan,
+            "first measurement, no fan": projects.begin_first_measurement_without_fan,
             "quick card": self._print_quick_card,
             "console": self.console.open,
             "many sets": self.many_sets.open,

@@ -235,7 +235,7 @@ class Menus(QObject):
         help_menu = bar.addMenu(tr("&Help"))
         self._add(help_menu, "manual", tr("&Manual"))
         self._add(help_menu, "first measurement", tr("&First measurement, step by step"))
-        self._add(help_menu, "first measurement without fan", tr("The same &with a line laser and two sheets"))
+        self._add(help_menu, "first measurement, no fan", tr("The same &with a line laser and two sheets"))
         self._add(help_menu, "quick card", tr("&Quick card to print …"))
         self._add(help_menu, "keys", tr("&Keys"), self._show_keys)
         self._add(help_menu, "double click", tr("Open projects by &double click …"))

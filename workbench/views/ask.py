@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.language import tr
+from workbench.views.common import Choice
 from workbench.views.layouts import in_row
 
 
