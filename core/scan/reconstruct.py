@@ -114,7 +114,8 @@ def reconstruct(
     options = options or ReconstructOptions()
     progress = reported = StepProgress(progress)
     progress("network", 0, 3)
-    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
+    printed = printed_on_boards(features.fan, planes, fan, camera)
+    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step, printed)
     crossings, line = numbered(features.crossings, lines)
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
     control = Control(fan)
@@ -138,7 +139,6 @@ def reconstruct(
             ),
         )
     names = [frame.name for frame in features.frames]
-    printed = printed_on_boards(features.fan, lines, Control(fan, tuple(planes)), camera)
     watched = watch_fan(features, lines, camera, fan, printed)
     _require_rest(features, watched)
     among, unrest = (crossings, line), partial(_unrest, watched, names)

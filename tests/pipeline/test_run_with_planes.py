@@ -55,3 +55,14 @@ def test_a_plate_beside_the_fan_moves_no_value_and_is_no_cause_for_alarm(tmp_pat
     assert beside.thickness_mm == pytest.approx(alone.thickness_mm, abs=0.1 * alone.U_mm)
     assert abs(beside.thickness_mm - 50.0) < beside.U_mm and not beside.doubts
     assert "scan.planes_see_little" in codes or "scan.checked_by_planes" in codes
+
+
+@pytest.mark.accuracy
+def test_a_corner_of_chessboards_beside_the_fan_leaves_the_scan_to_be_measured(tmp_path: Path) -> None:
+    """Its strips were taken for a hundred lines of the fan, and made all light as unsure as they are."""
+    simulate_set(Scenario(scale=0.25, frames=24, seed=7, boards=BoardsBeside(corner=True)), tmp_path / "set")
+    gauge = run(tmp_path / "set", tmp_path / "beside", Options(sigma_cut_mm=0.2)).gauge  # the table is far behind
+    assert gauge is not None
+    assert abs(gauge.thickness_mm - 50.0) < gauge.U_mm < 0.12
+    scan = read_scan(tmp_path / "beside" / FILES["scan"])
+    assert set(scan.fan_line) >= {0, 1, 2} and scan.plane_check is not None and scan.plane_check.agrees

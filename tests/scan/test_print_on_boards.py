@@ -1,5 +1,7 @@
 """Print on a board that the reference shows as pieces of the fan's light: it is not watched, nor told as light."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from core.image.stripes.centreline import Centreline
@@ -7,9 +9,9 @@ from core.image.stripes.stripe import StripeSettings
 from core.scan.fan_watch import fan_shifts, watch_fan
 from core.scan.features.extraction import FrameFeatures, ScanFeatures
 from core.scan.features.reference import STRETCH
-from core.scan.known_planes.known_plane import Control
 from core.scan.print_on_boards import printed_on_boards
-from core.scan.sweeps.fan_lines import AMBIGUOUS, UNASSIGNED, FanLines
+from core.scan.sweeps.fan_lines import PRINT, UNASSIGNED
+from core.scan.sweeps.locate import number_fan_lines
 from tests.scan.known_planes.planes_on_paper import CORNER, board, scan_on_paper
 from tests.scan.synthetic import CAMERA, FAN
 
@@ -37,26 +39,38 @@ def on_the_board(line, plane):
 
 
 def test_print_is_neither_watched_nor_told_and_light_on_the_board_is():
-    plane = board(CORNER[0], 0)
-    light = on_the_board(1, plane)
-    outline = np.array(
-        [[10.0, light[:, 1].min() - 300], [1900.0, light[:, 1].min() - 300], [1900.0, 1300.0], [10.0, 1300.0]]
-    )
-    plane = board(CORNER[0], 0, place=(outline[0], outline[2]))
-    elsewhere = [piece(light - [0.0, 80.0 + 30 * k]) for k in range(3)]
-    beside = piece(light - [0.0, 500.0])
-    pieces = (piece(light), *elsewhere, beside)
-    lines = FanLines((UNASSIGNED,) * 5, (AMBIGUOUS,) * 5, ((0, 1),) * 5)
-    control = Control(FAN, (plane,))
-    printed = printed_on_boards(pieces, lines, control, CAMERA)
-    assert printed.tolist() == [False, True, True, True, False]
-    assert not printed_on_boards(pieces, FanLines.settled_as([1] * 5), control, CAMERA).any(), "of a line: light"
-    assert not printed_on_boards(pieces, lines, Control(FAN), CAMERA).any()
+    light = on_the_board(1, board(CORNER[0], 0))
+    top = light[:, 1].min() - 300
+    elsewhere = [light - [0.0, 80.0 + 30 * k] for k in range(3)]
+    before, beside = light + [0.0, 120.0], light - [0.0, 500.0]
+    pieces = tuple(piece(uv) for uv in (light, *elsewhere, before, beside))
+    width, height = CAMERA.image_size
+    picture, marks = np.full((height, width), 200, np.uint8), np.zeros((height, width), bool)
+    for uv in (light, *elsewhere, beside):  # strips of 7 px between dark marks
+        for du, dv in ((0, k) for k in (*range(-14, -3), *range(4, 15))):
+            at = (np.rint(uv[:, 1]).astype(int) + dv).clip(0, height - 1), np.rint(uv[:, 0]).astype(int) + du
+            picture[at], marks[at] = 20, True
+    plane = replace(board(CORNER[0], 0, place=((10.0, top), (1900.0, 1300.0))), picture=picture, marks=marks)
+    printed = printed_on_boards(pieces, [plane], FAN, CAMERA)
+    assert printed.tolist() == [False, True, True, True, False, False], "light on the board or before it is none"
+    dark = replace(plane, picture=np.full_like(picture, 20))
+    assert not printed_on_boards(pieces, [dark], FAN, CAMERA).any(), "strips that its picture does not show"
+    assert not printed_on_boards(pieces, [], FAN, CAMERA).any()
     table = scan_on_paper(1, count=2).features.crossings
-    shifts = np.repeat([0.0, 9.0, 9.0, 9.0, 0.0], 4)
-    frames = tuple(FrameFeatures(k, f"{k}", (), fan_shifts_px=shifts * (k > 6)) for k in range(12))
+    lines = number_fan_lines(pieces, table, CAMERA, FAN, printed=printed)
+    assert [lines.line[k] for k in np.flatnonzero(printed)] == [UNASSIGNED] * 3
+    shifts = np.repeat([0.0, 9.0, 9.0, 9.0, 0.0, 0.0], 4)
+    frames = tuple(FrameFeatures(k, f"{k}", (), fan_shifts_px=shifts * (k > 6) + 1e-3 * np.sin(k)) for k in range(12))
     stripe = StripeSettings(3.0, 50.0)
     features = ScanFeatures(CAMERA.image_size, pieces, frames, table, stripe, stripe)
-    assert fan_shifts(features, printed)[1].shape == (12, 8) and not fan_shifts(features, printed)[1].any()
+    assert fan_shifts(features, printed)[1].shape == (12, 12)
     assert watch_fan(features, lines, CAMERA, FAN).movements
     assert not watch_fan(features, lines, CAMERA, FAN, printed).movements
+
+
+def test_where_all_is_print_no_line_is_numbered():
+    pieces = (piece(np.column_stack([np.arange(60.0), np.full(60, 9.0)])),)
+    lines = number_fan_lines(
+        pieces, scan_on_paper(1, count=2).features.crossings, CAMERA, FAN, printed=np.ones(1, bool)
+    )
+    assert lines.line == (UNASSIGNED,) and lines.reason == (PRINT,)

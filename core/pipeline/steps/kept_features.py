@@ -90,6 +90,7 @@ def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> 
         "fan": recording_set.rig.has_fan,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(settings.stripe) if settings.stripe else None,
+        "boards": repr([board.stated for board in recording_set.known_planes if recording_set.rig.has_fan]),
         "frames": [recording_set.name_of(path) for path in recording_set.frames],
         "pictures": pictures.named_hashes(_pictures(recording_set, settings)),
     }
@@ -97,9 +98,11 @@ def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> 
 
 
 def _pictures(recording_set: RecordingSet, settings: Options) -> list[Path]:
-    """The reference and the frames that are not left out by hand."""
+    """The reference with the boards' pictures, and the frames that are not left out by hand."""
     frames = [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
-    return recording_set.with_further(frames if recording_set.reference is None else [recording_set.reference, *frames])
+    shown = frames if recording_set.reference is None else [recording_set.reference, *frames]
+    boards = recording_set.known_plane_pictures() if recording_set.rig.has_fan else []
+    return [*recording_set.with_further(shown), *boards]
 
 
 _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")

@@ -25,6 +25,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import as_measured
 from core.messages import Message
 from core.progress import Progress, StepProgress, silent, steps
+from core.scan.features.board_print import without_marks
 from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameFeatures, light_faults, notes_on
@@ -257,7 +258,7 @@ def choose_sweep_stripe(
     for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, Reason) and picture.shape == reference.base.shape:
             difference = reference.of_lasers(picture).difference.astype(np.float32, copy=False)
-            settings = choose_settings(difference, reference.full_scale)
+            settings = choose_settings(without_marks(difference, reference.marks), reference.full_scale)
             if settings is not None:
                 seen.append(settings)
     if not seen:
@@ -357,7 +358,13 @@ class FrameReader:
             return FrameFeatures(index, name, (), Exclusion.WITHOUT_STRIPE, check.shift_px, light, check.shifts_px)
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
-            pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+            pieces = extract_centrelines(
+                difference,
+                self.stripe,
+                noise=self.reference.noise,
+                saturated=saturated,
+                ignore=self.reference.marks,
+            )
             others = {number: more for number, each in self.further.items() if (more := each.of(name)) is not None}
         exposures: dict[int, Exposures] = {}
         if others:

@@ -27,6 +27,7 @@ from core.image.stripes.told_width import as_measured
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
+from core.scan.features.board_print import without_marks
 from core.scan.features.crossings import CrossingWindow
 from core.scan.features.fan_light import FanLight
 from core.scan.features.room_light import RoomLight
@@ -164,7 +165,7 @@ class FeatureOptions:
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
     a `camera`, centrelines are crossed as they would be without its distortion. `compression` is that of each picture.
     Of whole pictures only the `sites` are handed in; what is found is in px of the whole pictures. `has_fan`: whether
-    there is a fan whose lines are looked for.
+    there is a fan whose lines are looked for. On the `marks` (H, W) that are printed on boards nothing is looked for.
     """
 
     sweep_stripe: StripeSettings | None = None
@@ -175,6 +176,7 @@ class FeatureOptions:
     compression: Compression = UNCOMPRESSED
     sites: Sites = ALL_SITES
     has_fan: bool = True
+    marks: NDArray[np.bool_] | None = None
 
 
 class LaserLight(NamedTuple):
@@ -195,7 +197,7 @@ class ReferenceFeatures:
 
     `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
     the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` and `light` are what
-    it shows of the room's light and of the fan's.
+    it shows of the room's light and of the fan's. On `marks` (H, W) no stripe is looked for.
     """
 
     base: Picture
@@ -205,6 +207,7 @@ class ReferenceFeatures:
     stripe: StripeSettings
     room: RoomLight
     light: FanLight
+    marks: NDArray[np.bool_] | None = None
 
     @property
     def image_size(self) -> tuple[int, int]:
@@ -268,6 +271,7 @@ def read_reference(
         stripe,
         room,
         FanLight.of(picture, room.bare, full_scale),
+        options.marks,
     )
 
 
@@ -278,9 +282,10 @@ def _fan_centrelines(
         return options.fan_stripe or USUAL_STRIPE, ()
 
     def look(settings: StripeSettings) -> tuple[Centreline, ...]:
-        return extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
+        return extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale, ignore=options.marks)
 
-    settings, fan = options.fan_stripe or choose_settings(base, full_scale), tuple[Centreline, ...]()
+    settings = options.fan_stripe or choose_settings(without_marks(base, options.marks), full_scale)
+    fan = tuple[Centreline, ...]()
     if settings is not None:
         settings, fan = as_measured(settings, look) if options.fan_stripe else (settings, look(settings))
     if settings is None or not fan:

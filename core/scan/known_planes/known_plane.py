@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,8 @@ class KnownPlane:
         How many pictures it was seen in.
     rms_px
         Of its points from where they should be.
+    picture
+        (H, W) grey levels of the first of them; None: not kept.
     """
 
     name: str
@@ -73,6 +76,7 @@ class KnownPlane:
     print_of: str = ""
     pictures: int = 1
     rms_px: float = float("nan")
+    picture: NDArray[Any] | None = None
 
     def __post_init__(self) -> None:
         shapes = (("pi", (3,)), ("outline", (None, 2)), ("of_pose", (3, 3)), ("of_flatness", (3, 3)))

@@ -116,6 +116,7 @@ def seek_plane(board: BoardOf, pictures: Sequence[tuple[str, NDArray[Any]]], cam
         marks=even.uneven,
         pictures=len(seen),
         rms_px=float(np.sqrt(np.mean([one.rms_px**2 for one in seen]))),
+        picture=shown[0],
     )
     return SoughtPlane(plane, notes)
 

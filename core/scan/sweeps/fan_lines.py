@@ -63,6 +63,7 @@ Pairs = NDArray[np.bool_]
 """(n, N, n, N): whether centreline i may be of line k where centreline j is of line m."""
 Counts = NDArray[np.int64]
 
+PRINT = Message("scan.fan_light_is_print", "it is print on a known plane")
 AMBIGUOUS = Message("scan.fan_light_ambiguous", "it could be more than one of the fan's lines")
 
 
@@ -95,6 +96,17 @@ class FanLines:
     def settled_as(cls, line: Sequence[int]) -> FanLines:
         """Make a numbering that holds as settled the line numbers of centrelines known from an earlier solution."""
         return cls(tuple(line), (None,) * len(line), tuple((k,) for k in line))
+
+    @classmethod
+    def beside_print(cls, of_light: FanLines, printed: NDArray[np.bool_]) -> FanLines:
+        """Complete the numbering of what is light by the centrelines that are `printed` (C,), which are of no line."""
+        place = iter(range(len(of_light.line)))
+        of = [None if is_print else next(place) for is_print in printed.tolist()]
+        return cls(
+            tuple(UNASSIGNED if i is None else of_light.line[i] for i in of),
+            tuple(PRINT if i is None else of_light.reason[i] for i in of),
+            tuple((UNASSIGNED,) if i is None else of_light.choices[i] for i in of),
+        )
 
     @property
     def settled(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,10 +81,28 @@ class SweepPlanes:
 
 
 def number_fan_lines(
-    pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
+    pieces: Sequence[Centreline],
+    crossings: CrossingTable,
+    camera: Camera,
+    fan: Fan,
+    progress: Progress = silent,
+    printed: NDArray[np.bool_] | None = None,
 ) -> FanLines:
-    """Find the line (from 0) of each of the fan's centrelines, in the numbering the sweeps agree with best."""
-    return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan, progress)
+    """Find the line (from 0) of each of the fan's centrelines, in the numbering the sweeps agree with best.
+
+    Those that are `printed` (C,) on boards are of none.
+    """
+    if printed is None or not printed.any():
+        return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan, progress)
+    light = [piece for piece, is_print in zip(pieces, printed, strict=True) if not is_print]
+    if not light:
+        return FanLines.beside_print(FanLines((), (), ()), printed)
+    piece = np.where(crossings.with_fan, crossings.piece_b, 0)
+    crossings = replace(
+        crossings, piece_b=np.where(crossings.with_fan, np.cumsum(~printed)[piece] - 1, crossings.piece_b)
+    )
+    of_light = number_fan_lines(light, crossings.select(~crossings.with_fan | ~printed[piece]), camera, fan, progress)
+    return FanLines.beside_print(of_light, printed)
 
 
 def choose_numbering(

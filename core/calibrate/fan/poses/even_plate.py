@@ -35,7 +35,7 @@ class EvenPlate:
         The brightness about a pixel is the mean, a cell of the target wide, of what is not dark itself.
         """
         smooth = np.asarray(cv2.GaussianBlur(plate.astype(np.float32), (0, 0), _BLUR_PX), dtype=np.float32)
-        size = 2 * round(_cell_px(view)) + 1
+        size = 2 * round(cell_px(view)) + 1
         around: NDArray[Any] = np.full(smooth.shape, level, dtype=np.float32)
         for share in (DARK, EVEN):  # the mean is first known roughly
             around *= np.float32(share)
@@ -52,7 +52,7 @@ class EvenPlate:
         return cls(smooth, beside)
 
 
-def _cell_px(view: TargetView) -> float:
-    """Usual distance in px from one of the target's points to the next."""
+def cell_px(view: TargetView) -> float:
+    """Compute the usual distance in px from one of the target's points to the next."""
     apart = np.asarray(cKDTree(view.uv).query(view.uv, k=2)[0])
     return float(np.median(apart[:, 1]))

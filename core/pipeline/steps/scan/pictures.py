@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
@@ -24,6 +26,7 @@ from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
 from core.progress import Progress, silent, steps
+from core.scan.features.board_print import marks_on_board
 from core.scan.features.extraction import (
     LOOK_AHEAD,
     FeatureOptions,
@@ -101,7 +104,8 @@ def look_at_scan(
     progress("reference", 0, 1)
     picture, note = reference_picture(pictures, camera, settings, progress)
     sites = pictures.sites("scan")
-    looking = at_sites(looking, sites)
+    marks = _marks(pictures, picture)
+    looking = replace(at_sites(looking, sites), marks=None if marks is None else sites.of(marks))
     reference = read_reference(sites.of(picture), looking)
     further = _further_exposures(pictures, settings, looking, reference)
     factor = 1.0
@@ -122,6 +126,21 @@ def look_at_scan(
     notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference, mosaic), *shine)
     path = found.reference or used_frames(found, settings)[0]
     return SeenScan(lines, averaged, notes, faults, mosaic.too_fine, path, pictures.hashes, pictures.channels)
+
+
+def _marks(pictures: PictureReader, reference: Picture) -> NDArray[np.bool_] | None:
+    """What is printed on the boards beside a fan; None where there are none. Those not found are told elsewhere."""
+    found = pictures.recording_set
+    marks: NDArray[np.bool_] | None = None
+    for board in found.known_planes if found.rig.has_fan else ():
+        for path in board.pictures:
+            with suppress(InputError):
+                seen = pictures.read_board(path)
+                if seen.shape == reference.shape:
+                    mine = marks_on_board(board.target, seen, reference, board.stated.region_px)
+                    marks = mine if marks is None else marks | mine
+                    break
+    return marks
 
 
 def begin_looking(
