@@ -72,8 +72,8 @@ ROWS = (
             "fixed laser are as calibrated."),
     Finding("scan.planes_see_little", Weight.INFORMATION, Effect.NONE,
             "The fan agrees with {boards:and} (within {mm:.2g} mm, p = {p:.2g}), but that sees little: of usual "
-            "changes of the rig since its calibration it would show {percent:.0f} %, a picture of a check 93 %. It is "
-            "no check of camera and fixed laser."),
+            "changes of the rig since its calibration it would show {percent:.0f} %, of which a check has to show "
+            "{least:.0f} %. It is no check of camera and fixed laser."),
     Finding("scan.planes_alone", Weight.INFORMATION, Effect.NONE,
             "Measured by known planes alone, {boards:and}: {points:,} points of sweeps on them agree to {mm:.2g} mm."),
     Finding("scan.planes_disagree", Weight.GRAVE, Effect.NO_PROOF,

@@ -136,7 +136,9 @@ class PlaneCheck:
         if self.passed:
             return note_of("scan.checked_by_planes", boards=names, mm=mm, p=self.p)
         if self.agrees:
-            return note_of("scan.planes_see_little", boards=names, mm=mm, p=self.p, percent=100 * self.sees)
+            return note_of(
+                "scan.planes_see_little", boards=names, mm=mm, p=self.p, percent=100 * self.sees, least=100 * SEES
+            )
         alone = self.alone_off
         if alone is not None:
             return note_of(

@@ -5,7 +5,7 @@ from scipy.special import chdtri
 from core.calibrate.change import changes
 from core.scan.known_planes.known_plane import Control, KnownPlane
 from core.scan.known_planes.plane_deviations import followed_by_planes
-from core.scan.plane_check import DISAGREES, _told, check_by_planes
+from core.scan.plane_check import DISAGREES, SEES, _told, check_by_planes
 from core.scan.plane_points import with_plane_points
 from core.scan.reconstruct import reconstruct
 from core.simulate.scenario import Scenario
@@ -62,6 +62,7 @@ def test_a_board_that_is_hardly_known_agrees_but_is_no_check(exact, sd_mm):
     assert found.agrees and not found.passed
     assert found.note.code == "scan.planes_see_little"
     assert found.sees < 0.2
+    assert f"it would show {100 * found.sees:.0f} %, of which a check has to show {100 * SEES:.0f} %" in str(found.note)
 
 
 def test_the_probability_of_telling_a_change_is_that_of_draws():
