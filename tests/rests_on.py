@@ -107,7 +107,7 @@ def differing(before: str, now: str, words: bool = True) -> set[str]:
     SyntaxError
         If one of them is no module.
     """
-    versions = [(text.split("\n"), definitions(ast.parse(text))) for text in (before, now)]
+    versions = [_version(text) for text in (before, now)]
     texts = [
         {
             name: ["\n".join(lines[_first_line(one) - 1 : one.end_lineno]) for one in nodes]
@@ -118,6 +118,12 @@ def differing(before: str, now: str, words: bool = True) -> set[str]:
     other = {name for name in texts[0].keys() | texts[1].keys() if texts[0].get(name) != texts[1].get(name)}
     old, new = ({name: _meaning(name, known.get(name, []), words) for name in other} for _, known in versions)
     return {name for name in other if old[name] != new[name]}
+
+
+@cache
+def _version(text: str) -> tuple[list[str], dict[str, list[ast.stmt]]]:
+    """Lines and definitions of a module: it is compared with several, and with and without words."""
+    return text.split("\n"), definitions(ast.parse(text))
 
 
 def _first_line(node: ast.stmt) -> int:
