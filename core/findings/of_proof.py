@@ -106,6 +106,8 @@ REASONS: Mapping[str, Message] = {
     "overlap_disagrees": Message("doubt.overlap_disagrees", "two views disagree where they show the same surface"),
     "joint_inside_out": Message("doubt.joint_inside_out", "two views meet with their surfaces facing each other"),
     "marks_disagree": Message("doubt.marks_disagree", "the carrier's marks are not where they were calibrated"),
+    "few_marks_fit": Message("doubt.few_marks_fit", "too few of the carrier's marks fit each other"),
+    "marks_apart": Message("doubt.marks_apart", "two of the carrier's marks are not as far apart as calibrated"),
     "joint_hangs_on_one_mark": Message("doubt.joint_hangs_on_one_mark", "the joint hangs on one mark"),
     "joint_two_ways": Message("doubt.joint_two_ways", "there are two ways to put the views together"),
     "master_doubted": Message("doubt.master_doubted", "the master that it is compared with proves nothing"),

@@ -12,14 +12,23 @@ ROWS = (
     Finding("views.normals_opposed", Weight.GRAVE, Effect.NO_PROOF,
             "Where the views {first} and {second} meet, their surfaces face each other: one of them is put together "
             "inside out. Check which side of the carrier each shows.", fact="joint_inside_out"),
+    Finding("views.few_marks_fit", Weight.GRAVE, Effect.NO_PROOF,
+            "Of the view {view} only {n} of {seen} marks fit each other: which of them are wrong is a guess. At least "
+            "{least} must fit, and three quarters of those seen. Clean the marks, see that all are firm and without "
+            "glare, and take the view again.", fact="few_marks_fit"),
     Finding("views.marks_disagree", Weight.GRAVE, Effect.NO_PROOF,
             "The carrier's marks are not where they were calibrated: their residuals are {times:.1f} times as large as "
-            "stated, the largest {px:.2f} px at mark {number} of the view {view}. The carrier is bent, or marks were "
-            "moved: calibrate it again, and take the views again.", fact="marks_disagree"),
+            "stated, the largest {px:.2f} px at mark {number} of the view {view}. If that mark is smeared or in glare, "
+            "clean it; else the carrier is bent, or marks were moved: calibrate it again. Then take the views again.",
+            fact="marks_disagree"),
     Finding("views.hangs_on_one_mark", Weight.GRAVE, Effect.NO_PROOF,
             "Without mark {number} of the view {view} the joint moves by {mm:+.3f} mm at the part, more than the "
             "marks' uncertainty explains ({u_mm:.3f} mm): look whether that mark is clean and firm, and take the views "
             "again.", fact="joint_hangs_on_one_mark"),
+    Finding("views.pair_off", Weight.GRAVE, Effect.NO_PROOF,
+            "In the view {view} marks {first} and {second} are {mm:+.3f} mm farther apart than calibrated, {z:.1f} "
+            "times the uncertainty of that: one of them was moved, or the carrier is bent. Calibrate it again, and "
+            "take the views again.", fact="marks_apart"),
     Finding("views.two_ways", Weight.GRAVE, Effect.NO_PROOF,
             "There are two ways to put the views together: the marks fit another way, too, off by only {mm:.3f} mm. "
             "Add a mark, so that the layout has no symmetry.", fact="joint_two_ways"),
@@ -28,9 +37,6 @@ ROWS = (
             "smeared, in glare, or moved.",
             "Of the view {view} {n} marks are left out, as they do not fit the others: {numbers}. Look whether they "
             "are smeared, in glare, or moved."),
-    Finding("views.pair_off", Weight.CAUTION, Effect.NONE,
-            "In the view {view} marks {first} and {second} are {mm:+.3f} mm farther apart than calibrated, {z:.1f} "
-            "times the uncertainty of that."),
     Finding("views.no_overlap", Weight.CAUTION, Effect.NONE,
             "No surface is seen in two views: whether the part stayed where it was on its carrier is shown by nothing. "
             "Hold it firmly, or take the first view once more at the end."),

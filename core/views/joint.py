@@ -77,7 +77,8 @@ class Joint:
         (M, 6V) motions of the carrier if one of the M seen marks is left out, and (M, 6V, 2) roots of what that adds to
         their covariance, view by view and mark by mark.
     chi2, redundancy
-        Sum of the squared standardised residuals, with those of the carrier's marks, and what is expected of it.
+        Sum of the squared standardised residuals of all marks seen by Huber's weights, also of those left out, with
+        those of the carrier's marks, and what is expected of it.
     scale
         Factor ≥ 1 by which residuals are larger than stated; it is in `by_marks`.
     """
@@ -144,9 +145,13 @@ class Joint:
     def _all(self) -> range:
         return range(len(self.views))
 
+    def kept(self, view: int) -> NDArray[np.bool_]:
+        """Select (n,) the marks of a view that the robust fit has kept."""
+        return np.asarray(self.weights[view] >= LEFT_OUT)
+
     def left_out(self, view: int) -> NDArray[np.int64]:
         """List the numbers of the marks of a view that the robust fit has left out."""
-        return self.seen[view].numbers[self.weights[view] < LEFT_OUT]
+        return self.seen[view].numbers[~self.kept(view)]
 
 
 def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
@@ -164,7 +169,7 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
     Raises
     ------
     InputError
-        If a view shows fewer than FEWEST_MARKS marks, or its marks leave a direction of it free.
+        If a view shows fewer than FEWEST_MARKS marks that fit each other, or its marks leave a direction of it free.
     """
     for view in seen:
         if len(view) < FEWEST_MARKS:
@@ -191,6 +196,7 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
             else tukey_weights(length / scale, 1.5 * TUKEY)
         )
         weights = np.split(np.asarray(rule), np.cumsum([len(view) for view in seen])[:-1])
+        _require_kept(seen, weights)
         normal, weighted = _normal(design, np.repeat(rule, 2), scale, len(seen))
         step = np.linalg.solve(normal, weighted @ misfit - np.concatenate([np.zeros(6 * len(seen)), zeta]))
         poses = [_moved(pose, step[6 * v : 6 * v + 6]) for v, pose in enumerate(poses)]
@@ -200,9 +206,9 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
     positions = carrier.positions + (root @ zeta).reshape(-1, 3)
     design, misfit = _equations(carrier, positions, poses, seen, camera, roots)
     rule = np.concatenate(weights)
-    used = rule >= LEFT_OUT
-    squares = float((np.repeat(rule, 2) * misfit**2).sum() + zeta @ zeta)
-    redundancy = float(2 * np.count_nonzero(used) - 6 * len(seen))
+    length = np.linalg.norm(misfit.reshape(-1, 2), axis=1)
+    squares = float(huber_weights(length, 1.5 * HUBER) @ length**2 + zeta @ zeta)
+    redundancy = float(len(misfit) - 6 * len(seen))
     scale = float(np.sqrt(max(1.0, squares / max(redundancy, 1.0))))
     normal, weighted = _normal(design, np.repeat(rule, 2), scale, len(seen))
     inverse = np.linalg.inv(normal)
@@ -227,6 +233,20 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
     for number in range(len(seen)):
         _require_held(joint, number)
     return joint
+
+
+def _require_kept(seen: Sequence[MarksSeen], weights: Sequence[Array]) -> None:
+    """InputError that names the view of which fewer than FEWEST_MARKS marks fit each other, if there is one."""
+    for view, weight in zip(seen, weights, strict=True):
+        kept = int(np.count_nonzero(weight >= LEFT_OUT))
+        if kept < FEWEST_MARKS:
+            raise InputError(
+                Message("views.too_few_marks_fit", "of {seen} marks of the carrier seen, only {n} fit each other as "
+                        "they were calibrated, and {least} are needed", seen=len(view), n=kept, least=FEWEST_MARKS),
+                where=view.view,
+                todo=Message("views.advice_clean_marks", "clean the marks, see that all are firm and seen without "
+                             "glare, and calibrate the carrier anew if marks were moved"),
+            )  # fmt: skip
 
 
 def _without_each(design: Array, misfit: Array, solving: Array, gains: Array, scale: float) -> tuple[Array, Array]:

@@ -18,14 +18,16 @@ from core.image.targets.pose import cross_matrices
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
-from core.views.carrier import MarkKind, second_fit_mm
+from core.views.carrier import FEWEST_MARKS, MarkKind, second_fit_mm
 from core.views.joined_cloud import JoinedCloud
-from core.views.joint import LEFT_OUT, Joint
+from core.views.joint import Joint
 
 CHANCE = 1e-4
 """Chance of a false alarm that is taken, by each test of one joint."""
 TWO_WAYS = 10.0
 """The next best way to lay marks without numbers must miss by so many times their uncertainty."""
+MOST_LEFT_OUT = 0.25
+"""Share of a view's marks that may be left out: beyond it, which of them are wrong is a guess."""
 NEAR_MM, ALONG = 1.0, 0.8
 """Points of two views are on one surface if they are this near, and their normals' cosine is at least this."""
 FEWEST_SHARED = 200
@@ -84,7 +86,7 @@ class JointCheck:
     u_mm
         Standard uncertainty of the joint, by marks and carrier, where and along which it counts.
     pairs
-        Pairs of marks with the largest z-scores of their distances, one a view.
+        Pairs of marks that are used with the largest z-scores of their distances, one a view.
     without
         The joint without each single mark, in the order of the views.
     overlaps
@@ -117,11 +119,6 @@ class JointCheck:
             gone = self.joint.left_out(number)
             if len(gone):
                 notes.append(note_of("views.marks_left_out", view=view, n=len(gone), numbers=tuple(map(int, gone))))
-        notes += [
-            note_of("views.pair_off", view=pair.view, first=pair.first, second=pair.second, mm=pair.mm, z=pair.z)
-            for pair in self.pairs
-            if pair.z > _quantile(sum(len(seen) ** 2 for seen in self.joint.seen))
-        ]
         if not self.overlaps:
             notes.append(note_of("views.no_overlap"))
         return tuple(notes)
@@ -139,22 +136,30 @@ class JointCheck:
 
     def _of_marks(self) -> list[Message]:
         found, joint = [], self.joint
+        for number, seen in enumerate(joint.seen):
+            kept = int(np.count_nonzero(joint.kept(number)))
+            if kept <= FEWEST_MARKS or len(seen) - kept > MOST_LEFT_OUT * len(seen):
+                found.append(
+                    note_of("views.few_marks_fit", view=seen.view, n=kept, seen=len(seen), least=FEWEST_MARKS + 1)
+                )
         if self.chance < CHANCE:
-            used = [
-                np.where(w >= LEFT_OUT, np.linalg.norm(r, axis=1), 0.0)
-                for w, r in zip(joint.weights, joint.residuals, strict=True)
-            ]
-            view = int(np.argmax([px.max() for px in used]))
-            worst = int(np.argmax(used[view]))
+            off = [np.linalg.norm(residuals, axis=1) for residuals in joint.residuals]
+            view = int(np.argmax([px.max() for px in off]))
+            worst = int(np.argmax(off[view]))
             found.append(
                 note_of(
                     "views.marks_disagree",
                     times=joint.scale,
-                    px=float(used[view][worst]),
+                    px=float(off[view][worst]),
                     number=int(joint.seen[view].numbers[worst]),
                     view=joint.views[view],
                 )
             )
+        found += [
+            note_of("views.pair_off", view=pair.view, first=pair.first, second=pair.second, mm=pair.mm, z=pair.z)
+            for pair in self.pairs
+            if pair.z > _quantile(sum(len(seen) ** 2 for seen in joint.seen))
+        ]
         matter = (one for one in self.without if abs(one.change_mm) > self.u_mm)
         worst_one = max(matter, key=lambda one: one.z, default=None)
         if worst_one is not None and worst_one.z > _quantile(len(self.without)):
@@ -210,10 +215,11 @@ def _quantile(tests: int) -> float:
 
 
 def _worst_pair(joint: Joint, camera: Camera, view: int) -> PairOff:
-    """The two marks of a view whose distance, where their centres are seen on the carrier, is off most."""
-    carrier, seen, pose = joint.carrier, joint.seen[view], joint.poses[view]
+    """The two used marks of a view whose distance, where their centres are seen on the carrier, is off most."""
+    carrier, kept, pose = joint.carrier, joint.kept(view), joint.poses[view]
+    seen = joint.seen[view].select(kept)
     index = carrier.index_of(seen.numbers)
-    off = _off_mm(joint, camera, view)
+    off = _off_mm(joint, camera, view)[kept]
     places = carrier.positions[index]
     first, second = np.triu_indices(len(index), 1)
     apart = places[first] - places[second]
@@ -258,10 +264,10 @@ def _without_each(joint: Joint, by_motion: Array) -> list[WithoutMark]:
     changes, roots = joint.without @ by_carrier, np.einsum("i,mij->mj", by_carrier, joint.grown)
     return [
         WithoutMark(view, number, float(change), float(np.linalg.norm(root)))
-        for (view, number), change, root, weight in zip(
-            names, changes, roots, np.concatenate(joint.weights), strict=True
+        for (view, number), change, root, kept in zip(
+            names, changes, roots, np.concatenate([joint.kept(v) for v in range(len(joint.views))]), strict=True
         )
-        if weight >= LEFT_OUT
+        if kept
     ]
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.errors import InputError
 from core.image.targets.pose import cross_matrices
 from core.views.carrier import Carrier, MarkKind, fits_of, second_fit_mm
 from core.views.joint import join
@@ -65,6 +66,49 @@ def test_what_a_hurt_carrier_does_is_told_or_within_U(change):
         check, error, u = checked(known, hurt(known, seed, change), seed)
         _, without, _ = checked(known, both_seen(known, seed), seed)
         assert told(check) or abs(error - without) <= 2 * u, (seed, error, without, u)
+
+
+@pytest.mark.parametrize(("marks", "axis", "mm"), [(5, 2, 0.3), (6, 2, 0.3), (5, 0, 0.5)])
+def test_where_many_marks_have_moved_nothing_is_proven(marks, axis, mm):
+    """Marks all round the rim: of a half of it bent as a whole, only an overlap tells."""
+
+    def change(positions):
+        positions[12 : 12 + 2 * marks : 2, axis] += mm
+        return positions
+
+    for seed in range(3):
+        known = carrier(seed)
+        try:
+            check, error, u = checked(known, hurt(known, seed, change), seed)
+        except InputError as refused:
+            assert refused.code == "views.too_few_marks_fit"
+        else:
+            assert check.doubts or abs(error) <= 2 * u
+
+
+def test_with_as_many_marks_as_hold_a_view_nothing_is_proven():
+    known = carrier()
+    first, second = both_seen(known)
+    check, _, _ = checked(known, (first, second.select(np.arange(12) % 3 == 0)))
+    assert [doubt.fact for doubt in check.doubts] == ["few_marks_fit"]
+
+
+@pytest.mark.parametrize(("axis", "mm"), [(0, 0.6), (1, 0.6), (2, 2.0)])
+@pytest.mark.parametrize("seed", range(3))
+def test_one_of_four_marks_moved_is_refused_or_proves_nothing(axis, mm, seed):
+    def change(positions):
+        positions[12, axis] += mm
+        return positions
+
+    known = carrier(seed)
+    first, second = hurt(known, seed, change)
+    for chosen in ([0, 3, 6, 9], [0, 1, 2, 3]):
+        try:
+            check, _, _ = checked(known, (first, second.select(np.isin(np.arange(12), chosen))), seed)
+        except InputError as refused:
+            assert refused.code == "views.too_few_marks_fit"
+        else:
+            assert "few_marks_fit" in told(check)
 
 
 def test_a_mark_that_was_moved_is_named():
@@ -130,9 +174,10 @@ def test_a_view_of_marks_elsewhere_is_a_pair_off():
     known = carrier()
     first, second = both_seen(known)
     uv = second.uv.copy()
-    uv[2:4] += [[0.25, 0.1], [-0.25, 0.1]]
+    apart = (uv[2] - uv[3]) / np.linalg.norm(uv[2] - uv[3])
+    uv[2:4] += [0.145 * apart, -0.145 * apart]
     check, _, _ = checked(known, (first, MarksSeen(second.numbers, uv, second.covariance, "turned")))
-    assert told(check)
+    assert "marks_apart" in told(check)
     worst = max(check.pairs, key=lambda pair: pair.z)
     assert worst.view == "turned"
     assert worst.z > 4
