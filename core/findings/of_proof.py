@@ -106,6 +106,10 @@ REASONS: Mapping[str, Message] = {
     "overlap_disagrees": Message("doubt.overlap_disagrees", "two views disagree where they show the same surface"),
     "joint_inside_out": Message("doubt.joint_inside_out", "two views meet with their surfaces facing each other"),
     "marks_disagree": Message("doubt.marks_disagree", "the carrier's marks are not where they were calibrated"),
+    "slip_unseen": Message("doubt.slip_unseen", "nothing shows whether the part has slipped on its carrier"),
+    "part_may_have_slipped": Message(
+        "doubt.part_may_have_slipped", "the surfaces that two views share do not show a slip along the thickness"
+    ),
     "few_marks_fit": Message("doubt.few_marks_fit", "too few of the carrier's marks fit each other"),
     "marks_apart": Message("doubt.marks_apart", "two of the carrier's marks are not as far apart as calibrated"),
     "joint_hangs_on_one_mark": Message("doubt.joint_hangs_on_one_mark", "the joint hangs on one mark"),

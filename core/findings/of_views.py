@@ -37,7 +37,14 @@ ROWS = (
             "smeared, in glare, or moved.",
             "Of the view {view} {n} marks are left out, as they do not fit the others: {numbers}. Look whether they "
             "are smeared, in glare, or moved."),
-    Finding("views.no_overlap", Weight.CAUTION, Effect.NONE,
-            "No surface is seen in two views: whether the part stayed where it was on its carrier is shown by nothing. "
-            "Hold it firmly, or take the first view once more at the end."),
+    Finding("views.no_overlap", Weight.GRAVE, Effect.NO_PROOF,
+            "No surface of the part is seen in two views: whether it stayed where it was on its carrier while that was "
+            "turned is shown by nothing, and no thickness from one view to another is proven. Fasten it so that it "
+            "cannot move, and turn a block of known thickness over in the same way to see what the carrier does.",
+            fact="slip_unseen"),
+    Finding("views.slip_unseen", Weight.GRAVE, Effect.NO_PROOF,
+            "Surfaces that are seen in two views lie too steep to show whether the part has slipped along the "
+            "thickness: they leave u = {u_mm:.2g} mm of that, the marks {joint_mm:.2g} mm, and no thickness from one "
+            "view to another is proven. Fasten the part so that it cannot move, and turn a block of known thickness "
+            "over in the same way to see what the carrier does.", fact="part_may_have_slipped"),
 )  # fmt: skip

@@ -28,8 +28,14 @@ TWO_WAYS = 10.0
 """The next best way to lay marks without numbers must miss by so many times their uncertainty."""
 MOST_LEFT_OUT = 0.25
 """Share of a view's marks that may be left out: beyond it, which of them are wrong is a guess."""
-NEAR_MM, ALONG = 1.0, 0.8
-"""Points of two views are on one surface if they are this near, and their normals' cosine is at least this."""
+NEAR_MM, ALONG, REACH = 1.0, 0.8, 0.05
+"""Points of two views are on one surface if they are this near along it, their normals' cosine is at least this, and
+it is no farther off than this share of what the first view shows."""
+WALL = 3.0
+"""A surface that looks the other way is the far side of a wall if it lies behind by so many times the points' σ."""
+SLIP_MM, SLIP_TIMES = 10.0, 2.0
+"""How far a part may have slipped, as standard uncertainty, where nothing shows it; and what the surfaces that views
+share may leave of that, in units of the joint's u, for a proof."""
 FEWEST_SHARED = 200
 """Points that two views share, with which the overlap is judged."""
 
@@ -60,11 +66,12 @@ class WithoutMark:
         return abs(self.change_mm) / max(self.u_mm, 1e-9)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Overlap:
     """What two views show of one surface: how far apart they are, along its normals, with the uncertainty of that.
 
-    `opposed` is the share of the points that meet with normals against each other.
+    `opposed` is the share of the points that meet with normals against each other; `spread` (3, 3) the mean of n nᵀ
+    over the normals n: along directions that they do not span, the overlap shows nothing.
     """
 
     first: str
@@ -73,6 +80,7 @@ class Overlap:
     mm: float
     u_mm: float
     opposed: float
+    spread: Array
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -91,6 +99,9 @@ class JointCheck:
         The joint without each single mark, in the order of the views.
     overlaps
         Of views that share surface; () where none do.
+    u_slip_mm
+        Standard uncertainty to which they show that the part has not slipped from the first view to the last, along
+        where the joint counts.
     second_fit_mm
         By how much the next best way to lay the marks misses; infinite for marks with numbers.
     """
@@ -103,12 +114,13 @@ class JointCheck:
     pairs: tuple[PairOff, ...]
     without: tuple[WithoutMark, ...]
     overlaps: tuple[Overlap, ...] = ()
+    u_slip_mm: float = SLIP_MM
     second_fit_mm: float = np.inf
 
     @property
     def doubts(self) -> Doubts:
         """Why the joint proves nothing; what the surfaces say comes first."""
-        notes = [*self._of_overlaps(), *self._of_marks()]
+        notes = [*self._of_overlaps(), *self._of_marks(), *self._of_slip()]
         return tuple(Doubt.of(note) for note in notes)
 
     @property
@@ -119,8 +131,6 @@ class JointCheck:
             gone = self.joint.left_out(number)
             if len(gone):
                 notes.append(note_of("views.marks_left_out", view=view, n=len(gone), numbers=tuple(map(int, gone))))
-        if not self.overlaps:
-            notes.append(note_of("views.no_overlap"))
         return tuple(notes)
 
     def _of_overlaps(self) -> list[Message]:
@@ -133,6 +143,13 @@ class JointCheck:
                     note_of("views.overlap_disagrees", first=one.first, second=one.second, mm=one.mm, u_mm=one.u_mm)
                 )
         return found
+
+    def _of_slip(self) -> list[Message]:
+        if not self.overlaps:
+            return [note_of("views.no_overlap")]
+        if self.u_slip_mm > SLIP_TIMES * self.u_mm:
+            return [note_of("views.slip_unseen", u_mm=self.u_slip_mm, joint_mm=self.u_mm)]
+        return []
 
     def _of_marks(self) -> list[Message]:
         found, joint = [], self.joint
@@ -203,8 +220,25 @@ def check_joint(joint: Joint, camera: Camera, at: Array, along: Array, overlaps:
         tuple(_worst_pair(joint, camera, view) for view in range(len(joint.views))),
         tuple(_without_each(joint, by_motion)),
         tuple(overlaps),
+        _u_of_slip(joint.views, overlaps, along),
         float(second),
     )
+
+
+def _u_of_slip(views: Sequence[str], overlaps: Sequence[Overlap], along: Array) -> float:
+    """To what u in mm overlaps show, directly or by views between, how far the part slipped `along` from first to last.
+
+    Unknown is the part's shift in each view on its carrier; an overlap weighs the difference of two along its normals.
+    """
+    normal = np.eye(3 * len(views)) / SLIP_MM**2
+    for one in overlaps:
+        apart = np.zeros((3, 3 * len(views)))
+        for view, sign in ((one.first, -1.0), (one.second, 1.0)):
+            at = 3 * views.index(view)
+            apart[:, at : at + 3] = sign * np.eye(3)
+        normal += apart.T @ one.spread @ apart / one.u_mm**2
+    rest = np.linalg.inv(normal[3:, 3:])
+    return float(np.sqrt(along @ rest[-3:, -3:] @ along))
 
 
 def _quantile(tests: int) -> float:
@@ -307,22 +341,27 @@ def _overlap(joined: JoinedCloud, on_part: NDArray[np.bool_], first: int, second
     a, b = (np.flatnonzero(known & (cloud.view == view)) for view in (first, second))
     if min(len(a), len(b)) < FEWEST_SHARED:
         return None
-    found = cKDTree(cloud.points[a]).query(cloud.points[b], distance_upper_bound=NEAR_MM)
+    reach = max(NEAR_MM, REACH * float(np.ptp(cloud.points[a], axis=0).max()))
+    found = cKDTree(cloud.points[a]).query(cloud.points[b], distance_upper_bound=reach)
     distance, nearest = np.asarray(found[0]), np.asarray(found[1])
     met = np.isfinite(distance)
     ours, theirs = a[nearest[met]], b[met]
     cosine = np.einsum("ni,ni->n", cloud.normals[ours], cloud.normals[theirs])
-    shared = np.abs(cosine) >= ALONG
+    apart = np.einsum("ni,ni->n", cloud.normals[ours], cloud.points[theirs] - cloud.points[ours])
+    beside = np.sqrt(np.maximum(distance[met] ** 2 - apart**2, 0.0))
+    noise = np.hypot(cloud.sigma[ours], cloud.sigma[theirs])
+    against = (cosine <= -ALONG) & (apart >= -WALL * noise) & (apart <= NEAR_MM)  # not across a wall or a gap
+    shared = (beside <= NEAR_MM) & ((cosine >= ALONG) | against)
     if np.count_nonzero(shared) < FEWEST_SHARED:
         return None
-    ours, theirs, cosine = ours[shared], theirs[shared], cosine[shared]
+    ours, theirs, cosine, apart = ours[shared], theirs[shared], cosine[shared], apart[shared]
     names = joined.joint.views[first], joined.joint.views[second]
     opposed = float(np.mean(cosine < 0))
     normals = cloud.normals[ours]
-    apart = np.einsum("ni,ni->n", normals, cloud.points[theirs] - cloud.points[ours])
     columns = [joined.errors.views[view].motions for view in (first, second)]
     lever = np.hstack([np.cross(cloud.points[theirs], normals), normals]).mean(axis=0)
     by_joint = float(np.linalg.norm(lever @ (columns[1] - columns[0]).T))
     sweeps = max(len(np.unique(cloud.sweep[theirs])), 1)
     scatter = 1.2533 * float(np.median(np.abs(apart - np.median(apart)))) * 1.4826 / np.sqrt(sweeps)
-    return Overlap(*names, len(ours), float(np.median(apart)), float(np.hypot(by_joint, scatter)), opposed)
+    spread = normals.T @ normals / len(normals)
+    return Overlap(*names, len(ours), float(np.median(apart)), float(np.hypot(by_joint, scatter)), opposed, spread)

@@ -90,7 +90,7 @@ def marks_alone(seed: int, scale: float, **effects: Any) -> dict[str, Any]:
     at, up = first.translation, first.rotation[:, 2]
     off = ((joint.pose(1) @ (first @ second.inverse()).inverse()).apply(at[None])[0] - at) @ up
     check = check_joint(joint, rig.camera, at, up)
-    told = {doubt.fact for doubt in check.doubts} | {note.code for note in check.notes} - {"views.no_overlap"}
+    told = ({doubt.fact for doubt in check.doubts} | {note.code for note in check.notes}) - {"slip_unseen"}
     return {
         "seed": seed,
         "error": float(off),

@@ -12,7 +12,7 @@ def test_the_thickness_across_two_views_is_within_its_U(seed, tmp_path):
     found = figures(*measure_joint(scenario(seed, 0.25), tmp_path))
     assert abs(found["error"]) <= found["U"]
     assert found["U"] < 0.12
-    assert found["doubts"] == []
+    assert set(found["doubts"]) <= {"slip_unseen", "part_may_have_slipped"}
     assert min(found["marks"]) >= 9
     assert {"joint: marks", "joint: carrier"} <= set(found["budget"])
 

@@ -1,5 +1,7 @@
 """Points of two views in one frame: what errs in both at once adds up in the thickness between them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from core.scan.surface.cloud import FAN, Cloud
 from core.simulate.rig import pencil_fan
 from core.views.joined_cloud import View, join_clouds
 from core.views.joint import join
+from core.views.joint_check import overlaps_of
 from core.views.thickness import require_turned, thickness_across
 from tests.views.made import CAMERA, both_seen, carrier, exact, seen_in
 
@@ -90,8 +93,6 @@ def test_matter_that_lets_light_in_counts_twice_linearly():
     known = exact(carrier())
     rng = np.random.default_rng(3)
     joint = join(known, [seen_in(known, pose, side, rng, str(side)) for side, pose in enumerate(POSES)], CAMERA)
-    from dataclasses import replace
-
     plastic = replace(errors(), part=Part(material="plastic"))
     both = join_clouds(joint, [View("scan", face(), plastic), View("turned", face(seed=1), plastic)])
     views = both.cloud.view
@@ -119,6 +120,38 @@ def test_one_view_by_itself_errs_as_its_scan_does(joined):
     assert among.own == pytest.approx(alone.own)
     assert among.common[:, :1] == pytest.approx(alone.common)
     assert np.abs(among.common[:, 1:]).max() < 1e-15
+
+
+@pytest.fixture(scope="module")
+def again():
+    """Two views of the same side, the carrier as it was."""
+    known, rng = exact(carrier()), np.random.default_rng(3)
+    joint = join(known, [seen_in(known, POSES[0], 0, rng, name) for name in ("scan", "again")], CAMERA)
+    return join_clouds(joint, [View("scan", face(), errors()), View("again", face(), errors())])
+
+
+def second_shifted(joined, along_z, normal_z):
+    """The views with the second's points shifted by `along_z` mm from the first's, with normals (0, 0, `normal_z`)."""
+    cloud, first = joined.cloud, joined.cloud.view == 0
+    points, normals = cloud.points.copy(), cloud.normals.copy()
+    points[~first], normals[~first] = points[first] + [0.0, 0.0, along_z], [0.0, 0.0, normal_z]
+    return replace(joined, cloud=replace(cloud, points=points, normals=normals))
+
+
+def test_the_faces_of_a_thin_sheet_are_not_inside_out(again):
+    assert overlaps_of(second_shifted(again, 0.8, 1.0)) == []
+
+
+def test_surfaces_against_each_other_are_inside_out(again):
+    (one,) = overlaps_of(second_shifted(again, 0.0, 1.0))
+    assert one.opposed == 1.0
+
+
+@pytest.mark.parametrize("slip", [0.3, 1.2, 2.0])
+def test_a_face_seen_twice_is_apart_by_what_the_part_slipped(again, slip):
+    (one,) = overlaps_of(second_shifted(again, -slip, -1.0))
+    assert one.mm == pytest.approx(slip, abs=0.02)
+    assert one.spread[2, 2] == pytest.approx(1.0)
 
 
 def test_two_views_of_the_same_side_have_no_thickness_between_them():

@@ -15,7 +15,9 @@ from tests.views.made import CAMERA, both_seen, carrier, exact, poses, seen_in
 
 AT, ALONG = np.array([0.0, 50.0, 535.0]), np.array([0.0, 0.0, -1.0])
 BY_MOTION = ALONG @ np.hstack([-cross_matrices(AT[None])[0], np.eye(3)])
-SHARED = Overlap("scan", "turned", 5000, 0.004, 0.01, 0.0)
+FLAT, FLANKS = np.diag([0.0, 0.0, 1.0]), np.diag([0.5, 0.499, 0.001])
+"""How the normals spread of a face square to the camera, and of flanks with the noise of their normals."""
+SHARED = Overlap("scan", "turned", 5000, 0.004, 0.01, 0.0, FLAT)
 
 
 def checked(known, seen, seed=0, overlaps=(SHARED,)):
@@ -143,9 +145,30 @@ def test_surfaces_that_face_each_other_are_told():
     assert [doubt.fact for doubt in check.doubts] == ["joint_inside_out"]
 
 
-def test_without_an_overlap_it_is_said_that_nothing_shows_a_slip():
+def test_without_an_overlap_nothing_shows_a_slip_and_nothing_is_proven():
     known = carrier()
-    assert told(checked(known, both_seen(known), overlaps=())[0]) == {"views.no_overlap"}
+    assert told(checked(known, both_seen(known), overlaps=())[0]) == {"slip_unseen"}
+
+
+def test_flanks_alone_do_not_show_a_slip_along_the_thickness():
+    known = carrier()
+    check, _, _ = checked(known, both_seen(known), overlaps=(replace(SHARED, spread=FLANKS),))
+    assert told(check) == {"part_may_have_slipped"}
+    assert check.u_slip_mm == pytest.approx(SHARED.u_mm / np.sqrt(FLANKS[2, 2]), rel=0.01)
+
+
+def test_a_slip_is_shown_by_views_between_as_well():
+    known = carrier()
+    first, second = both_seen(known)
+    middle = MarksSeen(first.numbers, first.uv, first.covariance, "again")
+    again = Overlap("scan", "again", 5000, 0.0, 0.01, 0.0, FLAT)
+    joint = join(known, (first, middle, second), CAMERA)
+    u = [
+        check_joint(joint, CAMERA, AT, ALONG, (again, *more)).u_slip_mm
+        for more in ((), (replace(again, first="again", second="turned"),))
+    ]
+    assert u[0] > 1.0
+    assert u[1] == pytest.approx(np.sqrt(2) * 0.01, rel=0.01)
 
 
 def balls(positions):
