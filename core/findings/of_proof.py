@@ -110,6 +110,7 @@ REASONS: Mapping[str, Message] = {
     "part_may_have_slipped": Message(
         "doubt.part_may_have_slipped", "the surfaces that two views share do not show a slip along the thickness"
     ),
+    "carrier_as_printed": Message("doubt.carrier_as_printed", "the carrier's marks were never measured"),
     "few_marks_fit": Message("doubt.few_marks_fit", "too few of the carrier's marks fit each other"),
     "marks_apart": Message("doubt.marks_apart", "two of the carrier's marks are not as far apart as calibrated"),
     "joint_hangs_on_one_mark": Message("doubt.joint_hangs_on_one_mark", "the joint hangs on one mark"),

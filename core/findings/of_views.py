@@ -12,6 +12,10 @@ ROWS = (
     Finding("views.normals_opposed", Weight.GRAVE, Effect.NO_PROOF,
             "Where the views {first} and {second} meet, their surfaces face each other: one of them is put together "
             "inside out. Check which side of the carrier each shows.", fact="joint_inside_out"),
+    Finding("views.carrier_as_printed", Weight.GRAVE, Effect.NO_PROOF,
+            "The carrier is taken as it was printed: nobody has measured where its marks are. Have them measured, on "
+            "both sides, and put their places and uncertainties into its carrier.toml, without as_printed.",
+            fact="carrier_as_printed"),
     Finding("views.few_marks_fit", Weight.GRAVE, Effect.NO_PROOF,
             "Of the view {view} only {n} of {seen} marks fit each other: which of them are wrong is a guess. At least "
             "{least} must fit, and three quarters of those seen. Clean the marks, see that all are firm and without "

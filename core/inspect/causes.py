@@ -51,6 +51,10 @@ class Cause(Enum):
 
     JOINT_MARKS = Message("inspection.cause_joint_marks", "joint: marks")
     JOINT_CARRIER = Message("inspection.cause_joint_carrier", "joint: carrier")
+    JOINT_TEMPERATURE = Message("inspection.cause_joint_temperature", "joint: carrier's temperature")
+    JOINT_TEMPERATURE_ASSUMED = Message(
+        "inspection.cause_joint_temperature_assumed", "joint: carrier's temperature (assumed)"
+    )
     JOINT_DEPTH_BIAS = Message("inspection.cause_joint_depth_bias", "joint: common depth bias (twice)")
 
     PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")

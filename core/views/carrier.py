@@ -13,12 +13,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.inspect.uncertainty.part import TargetTemperature
 from core.model import Pose
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.positive_definite import inverse_root
 
 FEWEST_MARKS = 4
 """Marks that a view needs: with three, one that has moved cannot be told from the others."""
+
+
+NOT_STATED = TargetTemperature()
+AT_CELSIUS = 20.0
+"""Temperature that lengths are stated at, ISO 1."""
 
 
 class MarkKind(StrEnum):
@@ -41,7 +47,7 @@ class Carrier:
     sides
         (N,) 0 on side A, 1 on side B.
     positions
-        (N, 3) in mm in the carrier's frame: the centres of discs or balls.
+        (N, 3) in mm in the carrier's frame, at 20 °C: the centres of discs or balls.
     covariance
         (3N, 3N) in mm² of the stacked positions.
     radius_mm
@@ -53,6 +59,10 @@ class Carrier:
         all that the rig measures.
     name
         Of the carrier, for reports.
+    temperature
+        Of the carrier while the views are taken, and its expansion.
+    as_printed
+        Whether nobody has measured where its marks are: then nothing joined by it is proven.
     """
 
     numbers: NDArray[np.int64]
@@ -63,6 +73,8 @@ class Carrier:
     kind: MarkKind = MarkKind.RING
     scaled_by_target: bool = True
     name: str = ""
+    temperature: TargetTemperature = NOT_STATED
+    as_printed: bool = False
 
     def __post_init__(self) -> None:
         count = len(self.positions)
@@ -90,6 +102,13 @@ class Carrier:
         kept = values > 1e-12 * max(float(values.max(initial=0.0)), 1e-300)
         return np.asarray(vectors[:, kept] * np.sqrt(values[kept]), dtype=np.float64)
 
+    @property
+    def growth(self) -> tuple[float, float]:
+        """By what share of itself it is larger than at 20 °C, by a stated temperature, with the uncertainty of that."""
+        (celsius, u_celsius, _), (alpha, u_alpha) = self.temperature.warmth, self.temperature.expansion
+        warmer = celsius - AT_CELSIUS
+        return alpha * warmer, float(np.hypot(np.hypot(alpha, u_alpha) * u_celsius, u_alpha * warmer))
+
     def index_of(self, numbers: NDArray[np.int64]) -> NDArray[np.intp]:
         """Find the places (n,) of the marks with these numbers (n,), which the carrier must have."""
         order = np.argsort(self.numbers)
@@ -98,21 +117,6 @@ class Carrier:
     def on(self, side: int) -> NDArray[np.bool_]:
         """Select (N,) the marks of a side, 0 for A and 1 for B."""
         return np.asarray(self.sides == side)
-
-    def without(self, number: int) -> Carrier:
-        """Remove the mark with this number."""
-        kept = self.numbers != number
-        rows = np.repeat(kept, 3)
-        return Carrier(
-            self.numbers[kept],
-            self.sides[kept],
-            self.positions[kept],
-            self.covariance[np.ix_(rows, rows)],
-            self.radius_mm,
-            self.kind,
-            self.scaled_by_target,
-            self.name,
-        )
 
 
 class Fit(NamedTuple):

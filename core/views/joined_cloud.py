@@ -56,8 +56,10 @@ def join_clouds(joint: Joint, views: Sequence[View], *, scale_sd: float = 0.0, d
     for view, places in zip(reversed(views), reversed(columns), strict=True):
         if view.errors.common is not None:
             own[places] = joint.of_calibration(view.errors.common, scale_sd)
-    of_carrier = np.vstack([own, joint.by_marks.T, joint.by_carrier.T])
+    of_carrier = np.vstack([own, joint.by_marks.T, joint.by_carrier.T, joint.by_temperature.T])
     causes = [Cause.JOINT_MARKS] * joint.by_marks.shape[1] + [Cause.JOINT_CARRIER] * joint.by_carrier.shape[1]
+    assumed = joint.carrier.temperature.warmth.assumed
+    causes.append(Cause.JOINT_TEMPERATURE_ASSUMED if assumed else Cause.JOINT_TEMPERATURE)
     of_views, clouds, first_sweep, first_line = [], [], 0, 0
     for number, (view, places) in enumerate(zip(views, columns, strict=True)):
         motions = joint.motions(number, of_carrier)

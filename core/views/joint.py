@@ -7,6 +7,7 @@ cause:
 
 - *marks*: noise of the seen centres, each view's its own;
 - *carrier*: errors of the marks' positions, the same in all views;
+- *carrier's temperature*: a carrier that is warmer is larger, and seems nearer in all views;
 - *calibrations*: a displaced camera sees the marks elsewhere in all views at once, and its points move as well: the two
   are one error (`of_calibration`).
 
@@ -20,7 +21,7 @@ Förstner, W., Wrobel, B. P., Photogrammetric Computer Vision, Springer 2016, 15
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -115,9 +116,17 @@ class Joint:
         return lever @ matrix
 
     def covariance(self, view: int) -> Array:
-        """Compute the covariance (6, 6) of a view's motion (ω in rad, τ in mm) by marks and carrier."""
-        both = self.motion_of(view) @ np.hstack([self.by_marks, self.by_carrier])
-        return np.asarray(both @ both.T, dtype=np.float64)
+        """Compute the covariance (6, 6) of a view's motion (ω in rad, τ in mm) by marks and carrier, and its warmth."""
+        every = self.motion_of(view) @ np.hstack([self.by_marks, self.by_carrier, self.by_temperature])
+        return np.asarray(every @ every.T, dtype=np.float64)
+
+    @property
+    def by_temperature(self) -> Array:
+        """Motions (6V, 1) of the carrier by its temperature: larger by a share of itself, it seems nearer by that."""
+        return (
+            -self.carrier.growth[1]
+            * np.concatenate([[0.0, 0.0, 0.0, *pose.translation] for pose in self.poses])[:, None]
+        )
 
     def of_calibration(self, common: CommonErrors, scale_sd: float = 0.0) -> Array:
         """Compute the motions (K, 6V) of the carrier in the views by each displaced calibration of `common`.
@@ -160,7 +169,7 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
     Parameters
     ----------
     carrier
-        The marks' positions with their covariance.
+        The marks' positions with their covariance, at 20 °C; the joint is by what they are at its temperature.
     seen
         (V,) the marks seen in each view, the first the datum.
     camera
@@ -180,6 +189,7 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
                 todo=Message("views.advice_show_marks", "turn the carrier so that more of its marks are seen, "
                              "with even light and nothing in front of them"),
             )  # fmt: skip
+    carrier = replace(carrier, positions=carrier.positions * (1 + carrier.growth[0]))
     poses = [_first_pose(carrier, view, camera) for view in seen]
     root = carrier.root
     zeta = np.zeros(root.shape[1])

@@ -153,6 +153,8 @@ class JointCheck:
 
     def _of_marks(self) -> list[Message]:
         found, joint = [], self.joint
+        if joint.carrier.as_printed:
+            found.append(note_of("views.carrier_as_printed"))
         for number, seen in enumerate(joint.seen):
             kept = int(np.count_nonzero(joint.kept(number)))
             if kept <= FEWEST_MARKS or len(seen) - kept > MOST_LEFT_OUT * len(seen):

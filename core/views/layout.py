@@ -11,8 +11,10 @@ from core.views.carrier import Carrier
 
 UNEVEN_MM = 1.5
 """By how much marks are moved off an even layout, so that no turn of it looks like another."""
-U_PRINTED_MM, U_GLUED_MM = 0.1, 0.5
-"""Standard uncertainty of a printed mark's place on its sheet, and of how the two sheets lie to each other."""
+U_PRINTED_MM, U_SCALE = 0.1, 0.003
+"""Standard uncertainty of a printed mark's place on its sheet, and of the printer's scale, across and along."""
+U_GLUED_MM, U_TURN_RAD = 0.5, 0.005
+"""Standard uncertainty of how the two sheets lie to each other: shift, and turn or tilt (0.5 mm at the rim)."""
 
 
 def ring_places(marks: int, half_mm: tuple[float, float], disc_mm: float) -> Array:
@@ -45,8 +47,13 @@ def printed_carrier(marks: int, half_mm: tuple[float, float], disc_mm: float, th
         raise ValueError(f"there are {len(code_words())} codes, not {2 * marks}")
     numbers, positions = two_sided(marks, half_mm, disc_mm, thick_mm)
     sides = np.repeat([0, 1], marks)
-    together = np.zeros((6 * marks, 3))
+    together = np.zeros((6 * marks, 8))
     for axis in range(3):
         together[axis::3, axis] = U_GLUED_MM * sides
+        together[:, 3 + axis] = (np.cross(U_TURN_RAD * np.eye(3)[axis], positions) * sides[:, None]).ravel()
+    for axis in range(2):
+        together[axis::3, 6 + axis] = U_SCALE * positions[:, axis]
     covariance = U_PRINTED_MM**2 * np.eye(6 * marks) + together @ together.T
-    return Carrier(numbers, sides, positions, covariance, disc_mm, scaled_by_target=False, name="as printed")
+    return Carrier(
+        numbers, sides, positions, covariance, disc_mm, scaled_by_target=False, name="as printed", as_printed=True
+    )

@@ -17,7 +17,17 @@ def test_a_carrier_is_printed_with_its_file_beside_it(tmp_path):
     found = read_carrier(tmp_path / "carrier.toml")
     assert len(found) == 24
     assert not found.scaled_by_target
+    assert found.as_printed
     assert found.sigma[found.on(1), 2].min() > 0.4, "how the sheets are glued is not known"
+
+
+def test_a_printed_carrier_is_uncertain_by_the_printers_scale_and_how_side_B_is_turned():
+    carrier = carrier_on("A4")
+    scaled = (carrier.positions * [1.0, 0.0, 0.0]).ravel()
+    turned = (np.cross([0.0, 0.0, 1.0], carrier.positions) * carrier.on(1)[:, None]).ravel()
+    for column, u in ((scaled, 0.003), (turned, 0.005)):
+        explained = column @ np.linalg.solve(carrier.covariance, column)
+        assert 1 / np.sqrt(explained) == pytest.approx(u, rel=0.2)
 
 
 def test_the_same_carrier_gives_the_same_bytes():

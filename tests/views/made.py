@@ -1,5 +1,7 @@
 """A carrier seen in two views without pictures: the marks' centres, with the noise that is stated of them."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -27,7 +29,7 @@ def carrier(seed: int = 0, marks: int = 12) -> Carrier:
 def exact(known: Carrier) -> Carrier:
     """The same with its true positions."""
     true = true_positions(len(known) // 2)[1]
-    return Carrier(known.numbers, known.sides, true, known.covariance, known.radius_mm)
+    return replace(known, positions=true)
 
 
 def poses(seed: int = 0) -> tuple[Pose, Pose]:

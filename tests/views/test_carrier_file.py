@@ -1,21 +1,25 @@
 """carrier.toml: what is written is read, and what is wrong is told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.errors import InputError
 from core.files.recording.carrier_file import read_carrier, write_carrier
+from core.inspect.uncertainty.part import TargetTemperature
 from tests.views.made import carrier
 
 
 def test_a_carrier_is_read_as_it_was_written(tmp_path):
-    known = carrier()
+    known = replace(carrier(), temperature=TargetTemperature(21.5, 0.5, 23e-6, 1e-6), as_printed=True)
     write_carrier(tmp_path / "carrier.toml", known)
     found = read_carrier(tmp_path / "carrier.toml")
     assert found.positions == pytest.approx(known.positions, abs=1e-6)
     assert found.covariance == pytest.approx(known.covariance, rel=1e-5)
     assert (found.numbers == known.numbers).all()
     assert (found.sides == known.sides).all()
+    assert (found.temperature, found.as_printed) == (known.temperature, True)
     assert (found.radius_mm, found.kind, found.name) == (known.radius_mm, known.kind, known.name)
 
 
@@ -30,6 +34,7 @@ def test_without_a_covariance_each_mark_errs_by_its_own_u(tmp_path):
     [
         (("radius_mm = 4.0", "radius_mm = -1"), "radius_mm is -1, not a length in mm above 0"),
         (("number = 3", "number = 3\nsides = 1"), "sides is an unknown key"),
+        (("[[mark]]", "celsius = 25.0\n[[mark]]"), "u_celsius is missing"),
         (("[[mark]]", "covariance_mm2 = [[1.0]]\n[[mark]]"), "covariance_mm2 is not 3 × 3 for 1 marks"),
     ],
 )

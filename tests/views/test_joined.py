@@ -9,7 +9,7 @@ from core.calibrate.deviations import Deviation, moved_fan
 from core.inspect.causes import Cause
 from core.inspect.faces import FacePair
 from core.inspect.uncertainty.error_sources import Sources
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Pose
 from core.scan.common_errors import CommonErrors
@@ -120,6 +120,25 @@ def test_one_view_by_itself_errs_as_its_scan_does(joined):
     assert among.own == pytest.approx(alone.own)
     assert among.common[:, :1] == pytest.approx(alone.common)
     assert np.abs(among.common[:, 1:]).max() < 1e-15
+
+
+def test_what_a_warm_carrier_makes_nearer_counts_in_both_views():
+    known, rng = exact(carrier()), np.random.default_rng(3)
+    cold = replace(known, temperature=TargetTemperature(None, None, 23e-6, 0.0))
+    seen = [seen_in(cold, pose, side, rng, str(side), 1e-9) for side, pose in enumerate(POSES)]
+    both = join_clouds(join(cold, seen, CAMERA), [View("scan", face(), errors()), View("1", face(seed=1), errors())])
+    rows = {row.source: row.u_mm for row in across(both).budget}
+    assert rows[Cause.JOINT_TEMPERATURE_ASSUMED] == pytest.approx(2 * 23e-6 * 3.0 * (DEPTH + HALF), rel=0.01)
+
+
+def test_a_carrier_of_stated_temperature_is_taken_larger_by_its_expansion():
+    known, rng = exact(carrier()), np.random.default_rng(3)
+    warm = replace(known, temperature=TargetTemperature(30.0, 0.0, 23e-6, 0.0))
+    grown = replace(known, positions=known.positions * (1 + 230e-6))
+    seen = [seen_in(grown, pose, side, rng, str(side), 1e-9) for side, pose in enumerate(POSES)]
+    joint = join(warm, seen, CAMERA)
+    assert joint.poses[1].translation == pytest.approx(POSES[1].translation, abs=1e-5)
+    assert not joint.by_temperature.any()
 
 
 @pytest.fixture(scope="module")

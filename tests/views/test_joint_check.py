@@ -150,6 +150,11 @@ def test_without_an_overlap_nothing_shows_a_slip_and_nothing_is_proven():
     assert told(checked(known, both_seen(known), overlaps=())[0]) == {"slip_unseen"}
 
 
+def test_a_carrier_as_printed_proves_nothing():
+    known = carrier()
+    assert told(checked(replace(known, as_printed=True), both_seen(known))[0]) == {"carrier_as_printed"}
+
+
 def test_flanks_alone_do_not_show_a_slip_along_the_thickness():
     known = carrier()
     check, _, _ = checked(known, both_seen(known), overlaps=(replace(SHARED, spread=FLANKS),))

@@ -3,6 +3,11 @@
 kind = "ring"                 # or "ball"
 radius_mm = 3.5               # of the discs, or the certified one of the balls
 scaled_by_target = true       # calibrated by the rig's own plane target
+as_printed = false            # nobody has measured the marks
+celsius = 21.5                # of the carrier while the views are taken; positions are at 20 °C
+u_celsius = 0.5
+alpha_per_K = 23e-6
+u_alpha_per_K = 1e-6
 covariance_mm2 = [[...], ...] # of all coordinates, mark by mark; or u_mm at each mark, if nothing is shared
 
 [[mark]]
@@ -18,20 +23,22 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.complaints import checked, fitting
 from core.files.reading import read_toml
-from core.files.recording.rig import Table
+from core.files.recording.rig import WARMTH, Table, require_pairs
 from core.files.tables import Finite, Row3, ShortText
 from core.files.toml_text import toml_text
+from core.inspect.uncertainty.part import TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array
 from core.views.carrier import Carrier, MarkKind
 
 _SIDES = "AB"
+_AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 _MISSING = Message("views.carrier_missing", "there is no carrier.toml, which says where the carrier's marks are")
 _CALIBRATE = Message(
     "views.advice_calibrate_carrier", "have the marks on both sides of the carrier measured, and put the file there"
@@ -53,9 +60,19 @@ class _CarrierTables(Table):
     kind: Literal["ring", "ball"] = "ring"
     radius_mm: float = Field(gt=0, le=100, allow_inf_nan=False, description=label("a length in mm above 0"))
     scaled_by_target: bool = True
+    as_printed: bool = False
+    celsius: float | None = Field(None, ge=-50, le=200, description=label("a temperature in °C from −50 to 200"))
+    u_celsius: float | None = Field(None, ge=0, le=200, description=label("a temperature, 0 to 200 K"))
+    alpha_per_K: float | None = Field(None, ge=-1e-4, le=1e-3, description=_AN_ALPHA)  # noqa: N815
+    u_alpha_per_K: float | None = Field(None, ge=0, le=1e-3, description=_AN_ALPHA)  # noqa: N815
     name: ShortText = ""
     covariance_mm2: list[list[Finite]] = Field(default_factory=list)
     mark: list[_Mark] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _with_u(self) -> _CarrierTables:
+        require_pairs(self, WARMTH)
+        return self
 
 
 def read_carrier(path: Path) -> Carrier:
@@ -72,6 +89,8 @@ def read_carrier(path: Path) -> Carrier:
             MarkKind(tables.kind),
             tables.scaled_by_target,
             tables.name,
+            TargetTemperature(tables.celsius, tables.u_celsius, tables.alpha_per_K, tables.u_alpha_per_K),
+            tables.as_printed,
         )
 
 
@@ -112,11 +131,19 @@ def write_carrier(path: Path, carrier: Carrier) -> None:
             carrier.numbers, carrier.sides, carrier.positions, carrier.sigma, strict=True
         )
     ]
+    warmth = carrier.temperature
+    stated = zip(
+        ("celsius", "u_celsius", "alpha_per_K", "u_alpha_per_K"),
+        (warmth.celsius, warmth.u_celsius, warmth.alpha, warmth.u_alpha),
+        strict=True,
+    )
     tables = {
         "name": carrier.name,
         "kind": str(carrier.kind),
         "radius_mm": carrier.radius_mm,
         "scaled_by_target": carrier.scaled_by_target,
+        "as_printed": carrier.as_printed,
+        **{name: value for name, value in stated if value is not None},
         "covariance_mm2": [[float(f"{value:.7g}") for value in row] for row in carrier.covariance],
         "mark": marks,
     }

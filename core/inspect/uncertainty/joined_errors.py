@@ -93,7 +93,7 @@ class JoinedErrors(PointErrors):
     joined_sources
         Calibrations that the displacements of all views together come from.
     joint_causes
-        What acts on the joint beside them: of each cause whether it is a mark's noise or the carrier's.
+        What acts on the joint beside them: of each cause whether it is a mark's noise, the carrier's, or its warmth.
     joint_doubts
         Why the joint proves nothing.
     """

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from core.image.targets.coded_rings import code_of
+from core.inspect.uncertainty.part import TARGET_AT_20
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.scenario import Scenario
@@ -56,7 +57,15 @@ def calibrated_carrier(scenario: Scenario) -> Carrier:
     rng = generator(scenario.seed, "carrier")
     drawn = own * rng.standard_normal(6 * marks) + together @ rng.standard_normal(6)
     covariance = np.diag(own**2) + together @ together.T
-    return Carrier(numbers, sides, true + drawn.reshape(-1, 3), covariance, DISC_MM, name="simulated carrier")
+    return Carrier(
+        numbers,
+        sides,
+        true + drawn.reshape(-1, 3),
+        covariance,
+        DISC_MM,
+        name="simulated carrier",
+        temperature=TARGET_AT_20,
+    )
 
 
 def pose_table_carrier(scenario: Scenario) -> Pose:
