@@ -103,8 +103,12 @@ def witnessed(folder: Path, written: Written) -> Iterator[None]:
 
 
 def unwitnessed(folder: Path) -> InputError | None:
-    """Return the error that the project in `folder` has a trail with which no wing goes on; None if it may change."""
-    if any(wing.witness for wing in wings()) or not (folder / TRAIL).exists():
+    """Return the error that the project in `folder` has a trail and its wing is away; None if it may change.
+
+    A witness of another package does not write the trail.
+    """
+    goes_on = any(wing.name == AUDIT and wing.witness and origin is None for wing, origin in wings().wings)
+    if goes_on or not (folder / TRAIL).exists():
         return None
     why, todo = why_away(AUDIT)
     what = Message(

@@ -18,6 +18,7 @@ from core.files.project.packing import pack_project, unpack_project
 from core.files.project.witness import Written, evidence_of, witnessed
 from core.pipeline.project.report import with_words
 from core.report.pdf import build_report
+from core.wing import wings
 from core.wings.audit.people import Rules, person, read_rules, write_rules
 from core.wings.audit.trail import append, read_trail
 from tests.report.report_samples import block_content
@@ -133,6 +134,20 @@ def test_without_the_wing_a_project_with_a_trail_is_read_and_not_changed(
         f"{project}: nothing of it can be changed, as its changes stand in audit.jsonl, which is written by the wing "
         "audit, which is not there; take it out of TRISECT_WITHOUT_WINGS."
     )
+    assert contents(project.parent) == before
+
+
+@pytest.mark.parametrize("name", ["eyes", "audit"])
+def test_without_the_wing_a_witness_of_a_stranger_does_not_open_a_project_with_a_trail(
+    install: Install, project: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setattr("core.wing.OURS", "tests.wings.audit.no_wings")
+    stranger = WITNESS.replace('"eyes"', f'"{name}"')
+    install("lab-eyes", {"lab_eyes": stranger}, {"trisect.wings": {name: "lab_eyes:WING"}})
+    before = contents(project.parent)
+    assert [wing.name for wing in wings()] == [name]
+    with pytest.raises(InputError, match="which is written by the wing audit"):
+        write_project(project, renamed(project))
     assert contents(project.parent) == before
 
 
