@@ -39,6 +39,7 @@ OUR_EXPORTS: Mapping[str, str] = {"compared": GEOMETRY, "compared-csv": GEOMETRY
 Row = TypeVar("Row")
 
 _NOT_THERE = Message("plugin.not_there", "which is not there")
+INSTALL_ALL = Message("advice.wing_missing", "install Trisect with all its folders")
 _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
 
@@ -214,10 +215,9 @@ def why_away(name: str) -> tuple[Message, Message]:
     """Return what is wrong with a wing that is not there, as it follows its name in a sentence, and what to do."""
     if name in left_out() or any(wing.name == name for wing in wings().away):
         return _NOT_THERE, Message("advice.wing_left_out", "take it out of {variable}", variable=WITHOUT)
-    install = Message("advice.wing_missing", "install Trisect with all its folders")
     if why := _why_not_loaded(name):
-        return Message("plugin.not_loaded", "which cannot be loaded ({why})", why=why), install
-    return _NOT_THERE, install
+        return Message("plugin.not_loaded", "which cannot be loaded ({why})", why=why), INSTALL_ALL
+    return _NOT_THERE, INSTALL_ALL
 
 
 def _why_not_loaded(name: str) -> Message | str:

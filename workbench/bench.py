@@ -8,7 +8,6 @@ from typing import Any
 
 from PySide6.QtCore import QObject
 
-from core.files.project.witness import unwitnessed
 from workbench.language import text_of, tr
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
@@ -54,7 +53,7 @@ class Bench:
     @property
     def unwitnessed(self) -> str:
         """Reason why the open project cannot be changed, in no copy either, as a wing is not there; "" if it can."""
-        refused = None if self.model.folder is None else unwitnessed(self.model.folder)
+        refused = None if self.model.folder is None else self.model.why_wing_missing(self.model.folder)
         return "" if refused is None else text_of(refused)
 
     def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:

@@ -23,9 +23,10 @@ from core.files.project.folder import (
     write_project,
 )
 from core.files.project.lock import ProjectLock, lock_owner, take_lock
-from core.files.project.witness import Signed, Written, unwitnessed, witnessed
+from core.files.project.witness import PEOPLE, Signed, Written, unwitnessed, witnessed
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
+from core.wing import AUDIT, INSTALL_ALL
 from workbench.language import language_name
 from workbench.step_state import StepState, step_states
 
@@ -88,6 +89,8 @@ class Edit(QUndoCommand):
 class EditGuard:
     """Guard of changes in the window: what may be changed, and by whom. This one lets everything pass, by nobody."""
 
+    keeps_people = False
+    """Whether it asks for people's roles: without such a guard a project that names people is read-only."""
     signed_in: Signed | None = None
     """Who has signed in, and changes the project."""
 
@@ -201,7 +204,7 @@ class ProjectModel(QObject):
         """Return the error that says why the open project cannot be changed on the disk; None if it can."""
         if self.folder is None:
             return None
-        if (refused := unwitnessed(self.folder)) is not None:
+        if (refused := self.why_wing_missing(self.folder)) is not None:
             return refused
         if self._access is Access.READ_ONLY:
             return InputError(
@@ -215,6 +218,21 @@ class ProjectModel(QObject):
         except InputError as error:
             return error
         return None
+
+    def why_wing_missing(self, folder: Path) -> InputError | None:
+        """Return the error that a wing is missing without which a project is changed in no copy either; else None."""
+        if (refused := unwitnessed(folder)) is not None:
+            return refused
+        if self.guard.keeps_people or not (folder / PEOPLE).exists():
+            return None
+        what = Message(
+            "project.unguarded",
+            "nothing of it can be changed in the window, as {people} says who may change what, and the window's wing "
+            "{name}, which asks who has signed in, is not there or has failed",
+            people=PEOPLE,
+            name=AUDIT,
+        )
+        return InputError(what, where=folder, todo=INSTALL_ALL)
 
     def create(self, folder: Path, project: Project) -> None:
         """Make a new project in `folder` and open it.
@@ -252,7 +270,7 @@ class ProjectModel(QObject):
             If there is none, or it is damaged or of a newer program; neither matters with a `version`.
         """
         folder = path.parent if path.name == "project.json" else path
-        access = Access.READ_ONLY if unwitnessed(folder) is not None else access
+        access = Access.READ_ONLY if self.why_wing_missing(folder) is not None else access
         saved = None
         if version is None:
             version = saved = read_project(folder)

@@ -133,9 +133,9 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
     created = file.created or (before.created if before else None) or now
     text = project_text(replace(file, created=created, saved=now), path)
     try:
-        if path.exists():
-            _keep(folder / BACKUPS, path, keep_s)
         with witnessed(folder, Written("saved" if path.exists() else "created", before, file, text, why, by)):
+            if path.exists():
+                _keep(folder / BACKUPS, path, keep_s)
             write_text(path, text)
     except OSError as error:
         raise cannot_write(path, error) from error

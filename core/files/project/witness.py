@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 TRAIL = "audit.jsonl"
 """The file in which a wing keeps the trail of a project's changes."""
+PEOPLE = "people.json"
+"""The file in which it keeps who may change what in the project."""
 
 
 class Signed(Protocol):

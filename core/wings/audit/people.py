@@ -23,12 +23,11 @@ from core.files.complaints import checked_json
 from core.files.json_text import to_json
 from core.files.project.changes import Change
 from core.files.project.data import Done, Project
-from core.files.project.witness import Signed
+from core.files.project.witness import PEOPLE, Signed
 from core.files.reading import read_json
 from core.messages import Message, label
 from core.wings.audit.trail import Entry, append
 
-PEOPLE = "people.json"
 Role = Literal["operator", "inspector", "administrator"]
 ROLES: tuple[Role, ...] = ("operator", "inspector", "administrator")
 """Each may do what those before it may: run the plan; edit; change limits, the report's template and the people."""
@@ -149,9 +148,9 @@ def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
 def refused(rules: Rules, by: Signed | None, before: Project, after: Project) -> InputError | None:
     """Make the error that a person's role does not permit a change of the project; None if it does.
 
-    Who has not signed in (`by` is None) is an operator.
+    Who has not signed in (`by` is None), or is none of the project's people, is an operator.
     """
-    role = "operator" if by is None else by.role
+    role = by.role if by is not None and by in rules.people else "operator"
     needed = needed_role(before, after)
     if not rules.people or ROLES.index(role) >= ROLES.index(needed):
         return None

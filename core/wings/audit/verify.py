@@ -9,6 +9,7 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, inputs_of
+from core.files.project.witness import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
@@ -17,7 +18,6 @@ from core.messages import Message, plural_message
 from core.pipeline.project.workspace import project_set
 from core.progress import Progress, silent, steps
 from core.states import changed_since
-from core.wings.audit.people import PEOPLE
 from core.wings.audit.trail import Entry, Trail, read_trail
 from core.wings.audit.witness import CHANGING, names_of_results, told_of
 

@@ -9,13 +9,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from core.errors import InputError
 from core.files.atomic import remove, write_bytes
 from core.files.project.changes import differences
+from core.files.project.data import new_project
 from core.files.project.folder import RESULTS
 from core.files.project.witness import TRAIL, Witness, Written
 from core.files.reading import file_hash
 from core.messages import Message
-from core.wings.audit.people import read_rules, write_rules
+from core.wings.audit.people import read_rules, refused, write_rules
 from core.wings.audit.trail import Entry, append, read_trail
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def see(folder: Path, written: Written) -> Iterator[None]:
     Raises
     ------
     InputError
-        If the folder is gone, or cannot be written to.
+        If the role of who has signed in does not permit the change, the folder is gone, or cannot be written to.
     """
     match written.what:
         case "measured" | "reported":
@@ -48,6 +50,7 @@ def see(folder: Path, written: Written) -> Iterator[None]:
             if written.of is not None and ((rules := read_rules(written.of)).people or rules.reasons):
                 write_rules(folder, rules, written.by)
         case _:
+            _require_role(folder, written)
             _note_saved(folder, written)
             yield
 
@@ -102,6 +105,16 @@ def note_results(folder: Path, *, reported: bool = False) -> None:
 
 def _hashes(folder: Path) -> dict[str, str]:
     return {name: file_hash(folder / name) for name in names_of_results(folder)}
+
+
+def _require_role(folder: Path, written: Written) -> None:
+    """Raise InputError if the person's role does not permit it; what cannot be read was an empty project."""
+    if written.after is None:
+        return
+    before = new_project("") if written.before is None else written.before.project
+    error = refused(read_rules(folder), written.by, before, written.after.project)
+    if error is not None:
+        raise InputError(error.what, where=folder, todo=error.todo)
 
 
 def _note_saved(folder: Path, written: Written) -> None:

@@ -10,12 +10,12 @@ import pytest
 
 from core.errors import InputError
 from core.files.project.data import Done, Project, ProjectFile, new_project
-from core.files.project.folder import create_project
+from core.files.project.folder import create_project, read_project, write_project
+from core.files.project.witness import PEOPLE
 from core.files.recording.rig import GaugeSpec
 from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.wings.audit.people import (
-    PEOPLE,
     Rules,
     needed_role,
     needs_reason,
@@ -29,6 +29,7 @@ from core.wings.audit.people import (
 )
 from core.wings.audit.trail import read_trail
 from core.wings.audit.verify import verify
+from tests.simulated import contents
 
 ANNA, OLE, EVE = (
     person("Anna", "administrator", "anna-1"),
@@ -134,3 +135,26 @@ def test_a_reason_is_wanted_where_it_is_asked_for_and_limits_change_after_someth
     assert not needs_reason(Rules(reasons=True), judged, before, typed)
     assert not needs_reason(Rules(reasons=True), {}, before, other)
     assert not needs_reason(Rules(), judged, before, other)
+
+
+def test_what_a_role_does_not_permit_is_not_saved_by_a_script_either(project: Path) -> None:
+    file = read_project(project)
+    limits = replace(file, project=with_gauge(file.project, 50.0))
+    typed = replace(file, project=replace(file.project, info=replace(file.project.info, serial="7")))
+    before = contents(project)
+    for by in (None, OLE, EVE, person("Anna", "administrator", "other")):
+        with pytest.raises(InputError) as told:
+            write_project(project, limits, by=by)
+        assert str(told.value).startswith(f"{project}: only an administrator may change this; sign in")
+        assert contents(project) == before
+    write_project(project, limits, by=ANNA)
+    write_project(project, replace(limits, project=replace(limits.project, info=typed.project.info)))
+    assert read_project(project).project.info.serial == "7"
+
+
+def test_a_project_that_cannot_be_read_is_not_replaced_by_one_with_other_limits(project: Path) -> None:
+    file = read_project(project)
+    (project / "project.json").write_text("{")
+    with pytest.raises(InputError, match="only an administrator"):
+        write_project(project, replace(file, project=with_gauge(file.project, 50.0)), by=EVE)
+    assert (project / "project.json").read_text() == "{"

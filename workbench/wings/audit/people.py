@@ -44,6 +44,8 @@ def signing_in(bench: Bench, window: MainWindow) -> Callable[[], object]:
 class PeopleGuard(EditGuard):
     """EditGuard by the people of the open project, their roles, and whether changed limits want a reason."""
 
+    keeps_people = True
+
     def __init__(self, bench: Bench) -> None:
         self._bench, self._model = bench, bench.model
         self.window: QWidget | None = None
@@ -94,20 +96,22 @@ class PeopleGuard(EditGuard):
             self.signed_in = person
 
     def sign_in_or_out(self, save: Callable[[], bool]) -> None:
-        """Sign a person in by name and PIN, or sign out who is signed in; changes are saved before by `save`."""
+        """Sign a person in by name and PIN, or sign out who is signed in; changes are saved before by `save`.
+
+        Recovered changes that nobody may save without a name do not keep a person from signing in.
+        """
         if not self.rules.people:
             text = tr(
                 "Nobody is named in this project, so everybody may do everything. The manual says how to name people."
             )
             self._bench.notices.info(text)
             return
-        if not save():
-            return
-        if self.signed_in is not None:
+        saved = save()
+        if self.signed_in is None:
+            self._ask_who()
+        elif saved:
             self.sign_out()
             self._bench.notices.info(tr("Signed out."))
-            return
-        self._ask_who()
 
     def may_leave_operator_mode(self) -> bool:
         if not self.rules.people:

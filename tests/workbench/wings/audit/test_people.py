@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
 from core.files.project.data import Project
+from core.files.project.folder import write_autosave
 from core.files.project.keys import finished
 from core.files.recording.rig import GaugeSpec
 from core.wings.audit.people import Rules, person, write_rules
@@ -189,3 +190,16 @@ def test_a_guard_that_cannot_be_made_is_told(
     guard_project(hand_bench, window)
     (notice,) = hand_bench.notices.all
     assert notice.text.endswith("what it makes is no EditGuard.")
+
+
+def test_recovered_changes_that_nobody_may_save_do_not_keep_a_person_from_signing_in(
+    guard: PeopleGuard, projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, model = tmp_path / "block", projects.model
+    write_rules(folder, Rules((person("Anna", "administrator", "anna-1"),)))
+    write_autosave(folder, replace(model.file, project=with_nominal(model.project, 50.0)))
+    model.open(folder, recover=True)
+    assert not projects.save()
+    monkeypatch.setattr(pin, "ask_name_and_pin", lambda *_: ("Anna", "anna-1"))
+    guard.sign_in_or_out(projects.save)
+    assert projects.save() and read_trail(folder).entries[-1].by == "Anna"

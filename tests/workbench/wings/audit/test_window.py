@@ -149,3 +149,33 @@ def test_without_the_wing_a_project_that_is_locked_is_not_offered_to_be_taken_ov
     window.projects.open_project(wing_gone)
     window.model.open(wing_gone)
     assert window.model.is_read_only and not (wing_gone / ".lock.json").exists()
+
+
+@pytest.mark.parametrize("fault", ["folder gone", "guard fails"])
+def test_without_the_guard_a_project_with_people_opens_read_only_and_says_why(
+    bench: Bench, qapp: QApplication, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str
+) -> None:
+    folder = project(tmp_path / "block")
+    write_rules(folder, Rules((person("Anna", "administrator", "anna-1"),)))
+    if fault == "folder gone":
+        monkeypatch.setattr("workbench.wing.OURS", "workbench.no_wings")
+    else:
+        monkeypatch.setattr("workbench.wings.audit.people.guard_of", None)
+    look_again()
+    with window_in("en", bench, qapp, qtbot) as window:
+        window.projects.open_project(project(tmp_path / "open"))
+        renamed(window.projects, "Block 2")
+        assert window.projects.save()  # nobody is named: everybody may do everything
+        before = (folder / "project.json").read_bytes()
+        window.projects.open_project(folder)
+        assert window.model.is_read_only and "(read only)" in window.windowTitle()
+        told = (
+            f"{folder}: nothing of it can be changed in the window, as people.json says who may change what, and the "
+            "window's wing audit, which asks who has signed in, is not there or has failed; install Trisect with all "
+            "its folders."
+        )
+        assert window.bench.cannot_write == window.bench.notices.all[-1].text == told
+        renamed(window.projects, "Other")
+        assert not window.projects.save() and (folder / "project.json").read_bytes() == before
+    monkeypatch.undo()
+    look_again()
