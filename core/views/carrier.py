@@ -56,7 +56,7 @@ class Carrier:
         Rings or balls.
     scaled_by_target
         Whether the carrier was calibrated by the rig's own plane target: then it is larger than stated by as much as
-        all that the rig measures.
+        all that the rig measures. If not, or if that is not known, the rig's scale is in the thickness in full.
     name
         Of the carrier, for reports.
     temperature
@@ -71,7 +71,7 @@ class Carrier:
     covariance: Array
     radius_mm: float
     kind: MarkKind = MarkKind.RING
-    scaled_by_target: bool = True
+    scaled_by_target: bool = False
     name: str = ""
     temperature: TargetTemperature = NOT_STATED
     as_printed: bool = False

@@ -2,7 +2,7 @@
 
 kind = "ring"                 # or "ball"
 radius_mm = 3.5               # of the discs, or the certified one of the balls
-scaled_by_target = true       # calibrated by the rig's own plane target
+scaled_by_target = true       # calibrated by the rig's own plane target; left out: it was not
 as_printed = false            # nobody has measured the marks
 celsius = 21.5                # of the carrier while the views are taken; positions are at 20 °C
 u_celsius = 0.5
@@ -30,8 +30,9 @@ from core.files.atomic import write_text
 from core.files.complaints import checked, fitting
 from core.files.reading import read_toml
 from core.files.recording.rig import WARMTH, Table, require_pairs
-from core.files.tables import Finite, Row3, ShortText
+from core.files.tables import ShortText
 from core.files.toml_text import toml_text
+from core.image.targets.coded_rings import code_words
 from core.inspect.uncertainty.part import TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array
@@ -45,13 +46,18 @@ _CALIBRATE = Message(
 )
 
 
+_Place = Annotated[float, Field(ge=-1e4, le=1e4)]
+_Length = Annotated[float, Field(gt=0, le=100)]
+_Squared = Annotated[float, Field(ge=-1e4, le=1e4)]
+
+
 class _Mark(Table):
     """A mark."""
 
-    number: int = Field(ge=0, description=label("a whole number from 0"))
+    number: int = Field(ge=0, le=999, description=label("a whole number from 0 to 999"))
     side: Literal["A", "B"] = "A"
-    position_mm: Row3
-    u_mm: Annotated[Row3, Field(description=label("three lengths in mm"))]
+    position_mm: list[_Place] = Field(min_length=3, max_length=3, description=label("three places in mm within 10 m"))
+    u_mm: list[_Length] = Field(min_length=3, max_length=3, description=label("three lengths in mm above 0, up to 100"))
 
 
 class _CarrierTables(Table):
@@ -59,14 +65,16 @@ class _CarrierTables(Table):
 
     kind: Literal["ring", "ball"] = "ring"
     radius_mm: float = Field(gt=0, le=100, allow_inf_nan=False, description=label("a length in mm above 0"))
-    scaled_by_target: bool = True
+    scaled_by_target: bool = False
     as_printed: bool = False
     celsius: float | None = Field(None, ge=-50, le=200, description=label("a temperature in °C from −50 to 200"))
     u_celsius: float | None = Field(None, ge=0, le=200, description=label("a temperature, 0 to 200 K"))
     alpha_per_K: float | None = Field(None, ge=-1e-4, le=1e-3, description=_AN_ALPHA)  # noqa: N815
     u_alpha_per_K: float | None = Field(None, ge=0, le=1e-3, description=_AN_ALPHA)  # noqa: N815
     name: ShortText = ""
-    covariance_mm2: list[list[Finite]] = Field(default_factory=list)
+    covariance_mm2: list[list[_Squared]] = Field(
+        default_factory=list, description=label("rows of numbers in mm² from -10,000 to 10,000")
+    )
     mark: list[_Mark] = Field(min_length=1)
 
     @model_validator(mode="after")
@@ -79,6 +87,13 @@ def read_carrier(path: Path) -> Carrier:
     """Read and check the carrier in a carrier.toml; InputError if it is missing or wrong."""
     tables = checked(_CarrierTables, read_toml(path, missing=_MISSING, todo=_CALIBRATE), path)
     marks = tables.mark
+    if tables.kind == "ring" and (missing := [mark.number for mark in marks if mark.number >= len(code_words())]):
+        raise InputError(
+            Message("views.no_such_ring", "there is no coded ring {number}: their numbers are 0 to {last}",
+                    number=missing[0], last=len(code_words()) - 1),
+            where=path,
+            todo=_CALIBRATE,
+        )  # fmt: skip
     with fitting(path):
         return Carrier(
             np.array([mark.number for mark in marks]),
@@ -109,7 +124,12 @@ def _covariance(tables: _CarrierTables, path: Path) -> Array:
         )  # fmt: skip
     covariance = np.array(rows)
     smallest = float(np.linalg.eigvalsh((covariance + covariance.T) / 2).min())
-    if not np.allclose(covariance, covariance.T) or smallest < -1e-9 * max(float(np.trace(covariance)), 1e-12):
+    no_variance = float(np.diag(covariance).min()) <= 0
+    if (
+        no_variance
+        or not np.allclose(covariance, covariance.T)
+        or smallest < -1e-9 * max(float(np.trace(covariance)), 1e-12)
+    ):
         raise InputError(
             Message("views.no_covariance", "covariance_mm2 is no covariance: it is not symmetric and positive"),
             where=path,

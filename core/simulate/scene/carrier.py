@@ -43,7 +43,10 @@ def true_positions(marks: int) -> tuple[NDArray[np.int64], Array]:
 
 
 def calibrated_carrier(scenario: Scenario) -> Carrier:
-    """Make the carrier as its calibration states it: off the truth by a draw from its stated covariance."""
+    """Make the carrier as its calibration by the plane target states it: off the truth by a draw from its covariance.
+
+    Where the plates are larger than stated it is stated smaller by as much.
+    """
     marks = scenario.carrier.marks
     numbers, true = true_positions(marks)
     sides = np.repeat([0, 1], marks)
@@ -57,12 +60,14 @@ def calibrated_carrier(scenario: Scenario) -> Carrier:
     rng = generator(scenario.seed, "carrier")
     drawn = own * rng.standard_normal(6 * marks) + together @ rng.standard_normal(6)
     covariance = np.diag(own**2) + together @ together.T
+    stated = true / (1 + scenario.plates.plane_scale) + drawn.reshape(-1, 3)
     return Carrier(
         numbers,
         sides,
-        true + drawn.reshape(-1, 3),
+        stated,
         covariance,
         DISC_MM,
+        scaled_by_target=True,
         name="simulated carrier",
         temperature=TARGET_AT_20,
     )
