@@ -116,13 +116,13 @@ def test_with_boards_that_are_stated_a_scan_can_be_recorded_live(opened: MainWin
 
 def test_the_rail_has_five_pages_numbered_without_a_gap(opened: MainWindow) -> None:
     rail = opened.rail
-    shown = [button.text() for name, button in rail._buttons.items() if not rail._rows[name].isHidden()]
+    shown = [button.text() for name, button in rail._buttons.items() if not button.isHidden()]
     assert [text.split()[0] for text in shown] == ["1", "2", "3", "4", "5"]
     assert not any("planes" in text for text in shown)
     model = opened.model
     model.edit("state a fan", replace(model.project, rig=replace(model.project.rig, lines=3)))
     opened._refresh()
-    assert not any(row.isHidden() for row in rail._rows.values())
+    assert not any(button.isHidden() for button in rail._buttons.values())
 
 
 def test_while_the_boards_are_taken_the_guide_speaks_of_no_fan() -> None:

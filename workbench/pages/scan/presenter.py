@@ -189,9 +189,10 @@ class ScanPresenter(StepPresenter):
 
     @property
     def asks_for_plate(self) -> bool:
-        """Whether it is to be asked if the plate is left beside the part: once, where nothing lies there yet."""
+        """Whether it is to be asked if the plate is left beside the part: once, before anything is recorded."""
         asked = self.project.plate_beside is not None or bool(self.boards)
-        return self.has_fan and not asked and not self.model.is_read_only and self.stage is not Stage.LIVE
+        before = self.stage in (Stage.NONE, Stage.EMPTY)
+        return self.has_fan and not asked and before and not self.model.is_read_only
 
     def leave_plate_beside(self, on: bool) -> None:
         """Answer whether the plate is left beside the part; undoable."""

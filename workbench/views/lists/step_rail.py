@@ -32,7 +32,6 @@ class StepRail(QFrame):
         self._states: dict[str, str] = dict.fromkeys((name for name, _, _ in steps), "todo")
         self._buttons: dict[str, QToolButton] = {}
         self._badges: dict[str, IconLabel] = {}
-        self._rows: dict[str, QWidget] = {}
         group = QButtonGroup(self)
         layout = in_column(on=self, margins=(6, 10, 6, 10), spacing=4)
         for number, (name, title, symbol) in enumerate(steps, start=1):
@@ -47,10 +46,7 @@ class StepRail(QFrame):
             button.setMinimumHeight(36)
             group.addButton(button)
             badge = IconLabel(16)
-            row = QWidget()
-            in_row((button, 1), badge, on=row, spacing=4)
-            layout.addWidget(row)
-            self._rows[name] = row
+            layout.addLayout(in_row((button, 1), badge, spacing=4))
             self._buttons[name], self._badges[name] = button, badge
         layout.addStretch(1)
         self._titles = {name: title for name, title, _ in steps}
@@ -86,8 +82,9 @@ class StepRail(QFrame):
             self._badges[name].setToolTip(sentence)
             self._buttons[name].setAccessibleDescription(sentence)
         needed = [name for name in self._buttons if self._states[name] != "not needed"]
-        for name, row in self._rows.items():
-            row.setVisible(name in needed)
+        for name, button in self._buttons.items():
+            button.setVisible(name in needed)
+            self._badges[name].setVisible(name in needed)
         for number, name in enumerate(needed, start=1):
             self._buttons[name].setText(f"{number}  {self._titles[name]}")
         self._set_tips()
