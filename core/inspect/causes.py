@@ -56,6 +56,9 @@ class Cause(Enum):
         "inspection.cause_joint_temperature_assumed", "joint: carrier's temperature (assumed)"
     )
     JOINT_DEPTH_BIAS = Message("inspection.cause_joint_depth_bias", "joint: common depth bias (twice)")
+    JOINT_DEPTH_BIAS_ASSUMED = Message(
+        "inspection.cause_joint_depth_bias_assumed", "joint: common depth bias (twice; material assumed)"
+    )
 
     PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
     SPRAY = Message("inspection.cause_spray", "layer of spray on the part")
@@ -105,7 +108,12 @@ OF_TARGET = frozenset(
     (Cause.SCALE_TEMPERATURE, Cause.SCALE_EXPANSION, Cause.SCALE_TEMPERATURE_ASSUMED, Cause.SCALE_EXPANSION_ASSUMED)
 )
 """What the warmth of the calibration target does: the same to all that is measured with one calibration."""
-FROM_BELOW = frozenset((Cause.LIGHT_FROM_BELOW, Cause.LIGHT_FROM_BELOW_ASSUMED, Cause.JOINT_DEPTH_BIAS))
+IN_TWO_VIEWS = {
+    Cause.LIGHT_FROM_BELOW: Cause.JOINT_DEPTH_BIAS,
+    Cause.LIGHT_FROM_BELOW_ASSUMED: Cause.JOINT_DEPTH_BIAS_ASSUMED,
+}
+"""What light from below the surface is called in what reaches across views."""
+FROM_BELOW = frozenset((*IN_TWO_VIEWS, *IN_TWO_VIEWS.values()))
 """Light from below the surface that is not seen."""
 OF_BOARDS = frozenset(
     (

@@ -83,9 +83,14 @@ def join_clouds(joint: Joint, views: Sequence[View], *, scale_sd: float = 0.0, d
 
 
 def twice(part: Part) -> Part:
-    """Copy what is stated of a part for a thickness between two own faces of it: offsets count twice."""
+    """Copy what is stated of a part for a thickness between two own faces of it: offsets and layers count twice."""
     offset, sd = part.offset_mm, part.offset_sd_mm
-    return replace(part, offset_mm=None if offset is None else 2 * offset, offset_sd_mm=None if sd is None else 2 * sd)
+    return replace(
+        part,
+        offset_mm=None if offset is None else 2 * offset,
+        offset_sd_mm=None if sd is None else 2 * sd,
+        layers=2 * part.layers,
+    )
 
 
 def _aligned(by_view: Sequence[Sequence[Source]]) -> tuple[tuple[Source, ...], list[NDArray[np.intp]]]:

@@ -9,7 +9,7 @@ from core.calibrate.deviations import Deviation, moved_fan
 from core.inspect.causes import Cause
 from core.inspect.faces import FacePair
 from core.inspect.uncertainty.error_sources import Sources
-from core.inspect.uncertainty.part import Part, TargetTemperature
+from core.inspect.uncertainty.part import SUSPECTED_LAYER_MM, Part, TargetTemperature
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Pose
 from core.scan.common_errors import CommonErrors
@@ -101,6 +101,42 @@ def test_matter_that_lets_light_in_counts_twice_linearly():
     assert sources.below.shape[1] == 1
     of_first = sources.stretch[views == 0].max() + 1
     assert np.sign(sources.below[:of_first]).max() == np.sign(sources.below[of_first:]).max()
+
+
+def joined_of(part):
+    known, rng = exact(carrier()), np.random.default_rng(3)
+    joint = join(known, [seen_in(known, pose, side, rng, str(side)) for side, pose in enumerate(POSES)], CAMERA)
+    mine = replace(errors(), part=part)
+    return join_clouds(joint, [View("scan", face(), mine), View("turned", face(seed=1), mine)])
+
+
+def test_layers_of_spray_on_both_faces_add_up():
+    stated = across(joined_of(Part(material="sprayed", spray_mm=0.012, spray_sd_mm=0.002)))
+    bare = across(joined_of(Part(material="metal")))
+    assert stated.thickness_mm - bare.thickness_mm == pytest.approx(-0.024, abs=1e-9)
+    assert {row.source: row.u_mm for row in stated.budget}[Cause.SPRAY] == pytest.approx(0.004)
+
+
+def test_an_assumed_layer_of_spray_is_on_both_faces():
+    rows = {row.source: row.u_mm for row in across(joined_of(Part(material="sprayed"))).budget}
+    assert rows[Cause.SPRAY_ASSUMED] == pytest.approx(2 * SUSPECTED_LAYER_MM)
+
+
+@pytest.mark.parametrize(
+    ("material", "within", "through"),
+    [
+        ("plastic", Cause.LIGHT_FROM_BELOW, Cause.JOINT_DEPTH_BIAS),
+        (None, Cause.LIGHT_FROM_BELOW_ASSUMED, Cause.JOINT_DEPTH_BIAS_ASSUMED),
+    ],
+)
+def test_light_from_below_is_told_twice_only_across_views_and_where_it_is_assumed(material, within, through):
+    both = joined_of(Part(material=material))
+    views, up = both.cloud.view, np.array([0.0, 0.0, -1.0])
+    every = Sources.of(both.cloud, up, np.ones(len(views)), views, views, both.errors)
+    first = both.cloud.select(views == 0)
+    here = np.zeros(len(first), dtype=np.int64)
+    alone = Sources.of(first, up, np.ones(len(first)), here, here, both.errors)
+    assert (every.cause_below, alone.cause_below) == (through, within)
 
 
 def test_every_point_says_its_view_and_what_it_has_in_common_with_the_others(joined):

@@ -485,7 +485,7 @@ def part_table(part: Part) -> dict[str, Any]:
 
 
 def _of_part_alone(part: Part) -> dict[str, Any]:
-    return _renamed({name: value for name, value in asdict(part).items() if name != "target"})
+    return _renamed({name: value for name, value in asdict(part).items() if name not in ("target", "layers")})
 
 
 def temperature_table(target: TargetTemperature) -> dict[str, Any]:

@@ -124,8 +124,7 @@ def effects(
     if sources.behind.any():
         found.append(_effect(Cause.SKEWED_LIGHT, gains, sources.behind / 2, shared=True))
     if sources.below.any():
-        in_both = sources.cause_below is Cause.JOINT_DEPTH_BIAS  # all views see the same matter, face by face
-        found.append(_effect(sources.cause_below, gains, sources.below, shared=in_both))
+        found.append(_effect(sources.cause_below, gains, sources.below, shared=sources.below_in_all))
     return tuple(found)
 
 

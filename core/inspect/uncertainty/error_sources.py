@@ -25,7 +25,7 @@ from scipy.sparse import block_diag as sparse_block_diag
 from scipy.sparse import csr_array
 
 from core.calibrate.deviations import LAWLESS, UNMEASURED
-from core.inspect.causes import Cause
+from core.inspect.causes import IN_TWO_VIEWS, Cause
 from core.inspect.uncertainty.joined_errors import JoinedErrors
 from core.inspect.uncertainty.point_errors import PointErrors, along_stripes
 from core.inspect.uncertainty.skewed_light import light_below
@@ -101,6 +101,7 @@ class Sources:
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
     assumed: NDArray[np.bool_]  # (K,) common errors whose size nothing has measured
     cause_below: Cause  # what the row of `below` is called
+    below_in_all: bool = False  # whether it is the same in all that is measured: all views see the same matter
 
     @property
     def explained(self) -> Array:
@@ -399,7 +400,8 @@ def _joined(
         np.array(
             [source in UNMEASURED for source in errors.sources] + [False] * len(errors.joint_causes), dtype=np.bool_
         ),
-        Cause.JOINT_DEPTH_BIAS,
+        IN_TWO_VIEWS[known[0].cause_below] if len(known) > 1 else known[0].cause_below,
+        below_in_all=True,
     )
 
 

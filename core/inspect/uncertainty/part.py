@@ -117,6 +117,8 @@ class Part:
     celsius, u_celsius
         Its temperature while it was scanned.
     Each with its standard uncertainty; one is stated only with the other.
+    layers
+        How many layers of spray, each as stated or assumed, add up in a thickness.
     target
         How warm the target was by which it is measured.
     """
@@ -131,6 +133,7 @@ class Part:
     celsius: float | None = None
     u_celsius: float | None = None
     target: TargetTemperature = TargetTemperature()
+    layers: int = 1
 
     @property
     def lets_light_in(self) -> float:
@@ -163,14 +166,15 @@ class Part:
     @property
     def thicker_mm(self) -> float:
         """Correction in mm to a measured thickness: the stated offset less the layer of spray."""
-        return (self.offset_mm or 0.0) - (self.spray_mm or 0.0)
+        return (self.offset_mm or 0.0) - self.layers * (self.spray_mm or 0.0)
 
     @property
     def surface_rows(self) -> tuple[Contribution, ...]:
         """Budget rows of a thickness for the stated offset and the layer of spray; no zero rows."""
-        rows = [(Cause.PART_OFFSET, self.offset_sd_mm, self.offset_mm), (Cause.SPRAY, self.spray_sd_mm, self.spray_mm)]
+        layer, u_layer = self.layers * (self.spray_mm or 0.0), self.layers * (self.spray_sd_mm or 0.0)
+        rows = [(Cause.PART_OFFSET, self.offset_sd_mm, self.offset_mm), (Cause.SPRAY, u_layer, layer)]
         if self.material == "sprayed" and self.spray_mm is None:
-            rows.append((Cause.SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
+            rows.append((Cause.SPRAY_ASSUMED, self.layers * SUSPECTED_LAYER_MM, 0.0))
         return tuple(Contribution(source, u, u, value=value) for source, u, value in rows if u)
 
     @property
@@ -183,7 +187,7 @@ class Part:
                 "part.surface_corrected",
                 change_um=self.thicker_mm * 1e3,
                 offset_um=(self.offset_mm or 0.0) * 1e3,
-                spray_um=(self.spray_mm or 0.0) * 1e3,
+                spray_um=self.layers * (self.spray_mm or 0.0) * 1e3,
             ),
         )
 
