@@ -360,10 +360,12 @@ def _overlap(joined: JoinedCloud, on_part: NDArray[np.bool_], first: int, second
     names = joined.joint.views[first], joined.joint.views[second]
     opposed = float(np.mean(cosine < 0))
     normals = cloud.normals[ours]
-    columns = [joined.errors.views[view].motions for view in (first, second)]
-    lever = np.hstack([np.cross(cloud.points[theirs], normals), normals]).mean(axis=0)
-    by_joint = float(np.linalg.norm(lever @ (columns[1] - columns[0]).T))
+    moved = [
+        joined.errors.views[view].common_along(cloud.select(mine), normals).mean(axis=0)
+        for view, mine in ((first, ours), (second, theirs))
+    ]
+    in_common = float(np.linalg.norm(moved[1] - moved[0]))
     sweeps = max(len(np.unique(cloud.sweep[theirs])), 1)
     scatter = 1.2533 * float(np.median(np.abs(apart - np.median(apart)))) * 1.4826 / np.sqrt(sweeps)
     spread = normals.T @ normals / len(normals)
-    return Overlap(*names, len(ours), float(np.median(apart)), float(np.hypot(by_joint, scatter)), opposed, spread)
+    return Overlap(*names, len(ours), float(np.median(apart)), float(np.hypot(in_common, scatter)), opposed, spread)

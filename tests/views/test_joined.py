@@ -29,17 +29,17 @@ UP = np.diag([1.0, -1.0, -1.0])
 POSES = Pose(UP, np.array([0.0, 50.0, DEPTH + HALF])), Pose(np.eye(3), np.array([0.0, 50.0, DEPTH + HALF]))
 
 
-def face(sigma=0.01, seed=0):
-    """A face square to the view at DEPTH, where the fan's lines meet it."""
+def face(sigma=0.01, seed=0, at=DEPTH):
+    """A face square to the view at a depth, where the fan's lines meet it."""
     points, line = [], []
     for k, pi in enumerate(pencil_fan().pis):
         x = np.linspace(-30, 30, 120)
-        points.append(np.column_stack([x, (1 - pi[0] * x - pi[2] * DEPTH) / pi[1], np.full_like(x, DEPTH)]))
+        points.append(np.column_stack([x, (1 - pi[0] * x - pi[2] * at) / pi[1], np.full_like(x, at)]))
         line.append(np.full(len(x), FAN - k))
     points = np.concatenate(points)
-    depth = DEPTH + sigma * np.random.default_rng(seed).standard_normal(len(points))
+    depth = at + sigma * np.random.default_rng(seed).standard_normal(len(points))
     uv, ones = CAMERA.project(points), np.ones(len(points))
-    points *= (depth / DEPTH)[:, None]
+    points *= (depth / at)[:, None]
     frame = np.full(len(points), -1)
     return Cloud(
         points, uv, sigma * ones, 100 * ones, frame, np.concatenate(line), np.tile([0.0, 0, -1], (len(points), 1))
@@ -207,6 +207,21 @@ def test_a_face_seen_twice_is_apart_by_what_the_part_slipped(again, slip):
     (one,) = overlaps_of(second_shifted(again, -slip, -1.0))
     assert one.mm == pytest.approx(slip, abs=0.02)
     assert one.spread[2, 2] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("nearer", [0.0, 100.0])
+def test_two_views_are_parted_by_what_a_calibration_does_to_their_points_differently(nearer):
+    """A fan displaced by a share of the depth: alike at one distance, by that share of the way at another."""
+    known, rng, fan = exact(carrier()), np.random.default_rng(3), pencil_fan()
+    there = Pose(POSES[0].rotation, POSES[0].translation - [0.0, 0.0, nearer])
+    joint = join(
+        known, [seen_in(known, pose, 0, rng, str(k), 1e-4) for k, pose in enumerate((POSES[0], there))], CAMERA
+    )
+    larger = Deviation("fan", CAMERA, moved_fan(fan, -1e-3 * fan.pis.ravel()))
+    mine = replace(errors(), common=CommonErrors.of_fan(CAMERA, fan, [larger]))
+    views = [View("scan", face(), mine), View("again", face(at=DEPTH - nearer), mine)]
+    (one,) = overlaps_of(second_shifted(join_clouds(joint, views), 0.0, -1.0))
+    assert one.u_mm == pytest.approx(1e-3 * nearer, abs=0.012)
 
 
 def test_two_views_of_the_same_side_have_no_thickness_between_them():

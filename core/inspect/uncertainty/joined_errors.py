@@ -73,13 +73,21 @@ class ViewErrors:
 
         By all that its points have in common: calibrations and the joint.
         """
+        own = self.own(cloud).points
+        rays = own / np.linalg.norm(own, axis=1, keepdims=True) @ self.pose.rotation.T
+        return np.asarray(np.linalg.norm(self.common_along(cloud, rays), axis=1), dtype=np.float64)
+
+    def common_along(self, cloud: Cloud, directions: Array) -> Array:
+        """Compute by how much in mm each common cause (C,) moves points (N,) of this view along `directions` (N, 3).
+
+        Both in the first view's frame; a displaced calibration moves the points in their view, and the view with them.
+        """
+        along = np.hstack([np.cross(cloud.points, directions), directions]) @ self.motions.T
         own = self.own(cloud)
-        rays = own.points / np.linalg.norm(own.points, axis=1, keepdims=True) @ self.pose.rotation.T
-        along = np.hstack([np.cross(cloud.points, rays), rays]) @ self.motions.T
         if self.errors.common is not None:
             for column, change in zip(self.columns, self.errors.common.changes(own.uv, own.sweep), strict=True):
-                along[:, column] += np.einsum("ni,ni->n", change @ self.pose.rotation.T, rays)
-        return np.asarray(np.linalg.norm(along, axis=1), dtype=np.float64)
+                along[:, column] += np.einsum("ni,ni->n", change @ self.pose.rotation.T, directions)
+        return np.asarray(along, dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
