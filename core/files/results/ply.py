@@ -126,7 +126,7 @@ def read_cloud(path: Path) -> CloudFile:
     """
     data = _read(path, _TODO)
     vertices = _element(data, "vertex", [name for name, _ in _CLOUD if name not in _SINCE_LATER], path)
-    known = [name for name in _SINCE_LATER if name in (vertices.dtype.names or ())]
+    known = [name for name in (*_SINCE_LATER, _VIEW) if name in (vertices.dtype.names or ())]
 
     def columns(*names: str) -> Array:
         return _columns(vertices, names)
@@ -152,6 +152,7 @@ def read_cloud(path: Path) -> CloudFile:
         sigma_common=columns(_COMMON)[:, 0] if _COMMON in known else np.zeros(0),
         skewness=columns("skewness")[:, 0] if "skewness" in known else np.zeros(0),
         spread_mm=columns("spread")[:, 0] if "spread" in known else np.zeros(0),
+        view=np.asarray(vertices[_VIEW] if _VIEW in known else np.zeros(0), dtype=np.int64),
     )
     return CloudFile(cloud, _calibration(data))
 

@@ -238,6 +238,12 @@ def test_cloud_round_trip(tmp_path, cloud):
     assert (tmp_path / "again.ply").read_bytes() == path.read_bytes()
 
 
+def test_each_point_of_joined_views_keeps_its_view(tmp_path, cloud):
+    view = np.arange(len(cloud)) % 3
+    write_cloud(tmp_path / "joined.ply", replace(cloud, view=view), "abc")
+    assert read_cloud(tmp_path / "joined.ply").cloud.view.tolist() == view.tolist()
+
+
 def test_what_calibrations_add_to_sigma_is_a_property_behind_those_of_the_design(tmp_path, cloud):
     path = tmp_path / "cloud.ply"
     common = np.linspace(0.01, 0.02, len(cloud))
