@@ -43,7 +43,7 @@ def upper_face(joined: JoinedCloud, view: int, progress: Progress = silent) -> N
     raise InputError(
         Message("views.no_face", "no plane face of the part is seen above the carrier"),
         where=joined.joint.views[view],
-        todo=Message("views.advice_face", "scan the face with more sweeps, or draw the regions of both faces"),
+        todo=Message("views.advice_face", "scan the face with more sweeps"),
     )
 
 

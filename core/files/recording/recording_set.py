@@ -56,6 +56,8 @@ KNOWN_PLANES = "scan/planes"
 RIG = "rig.toml"
 VIEWS, CARRIER = "views", "carrier.toml"
 """The folder of further views of the part, and the file that says where the marks of its carrier are."""
+FIRST_VIEW = "scan"
+"""Name of the first view: the set's own scan."""
 _BRACKETED = ("planes", "scan", CHECK)
 """Folders whose pictures may have further exposures."""
 
@@ -246,13 +248,20 @@ def further_views(recording_set: RecordingSet) -> dict[str, RecordingSet]:
     Raises
     ------
     InputError
-        If its pictures are not all of one size.
+        If its pictures are not all of one size, or a view has the name of the first one, the set's own scan.
     """
     folder = recording_set.rig_file.parent / VIEWS
     if not folder.is_dir():
         return {}
     found = {}
     for place in sorted(path for path in folder.iterdir() if path.is_dir()):
+        if place.name == FIRST_VIEW:
+            raise InputError(
+                Message("views.name_of_first", "a further view cannot be called {name}: so the first one is called, "
+                        "the set's own scan", name=FIRST_VIEW),
+                where=place,
+                todo=Message("views.advice_rename", "give its folder another name"),
+            )  # fmt: skip
         reference, frames = scan_frames(place)
         folders = {part: path for part, path in recording_set.folders.items() if part != KNOWN_PLANES}
         further = {**recording_set.further, **further_exposures(place)}

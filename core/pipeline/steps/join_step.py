@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.errors import InputError
+from core.files.atomic import write_bytes
+from core.files.json_text import to_json
 from core.files.recording.carrier_file import read_carrier
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.recording_set import CARRIER, VIEWS, further_views
+from core.files.recording.recording_set import CARRIER, FIRST_VIEW, VIEWS, further_views
 from core.files.results.joint_file import joint_table, write_joint
 from core.files.results.ply import read_cloud, write_cloud
 from core.files.results.scan_file import read_scan
@@ -28,9 +32,6 @@ from core.views.joint_check import JointCheck, check_joint, overlaps_of
 from core.views.marks_seen import MarksSeen, see_marks
 from core.views.thickness import faces_across, require_turned, thickness_across
 
-FIRST = "scan"
-"""Name of the first view: the set's own scan."""
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class JoinResult:
@@ -47,9 +48,9 @@ def view_workspaces(work: Workspace) -> dict[str, Workspace]:
     Raises
     ------
     InputError
-        If a folder cannot be made.
+        If a view is called as the first one, or a folder cannot be made.
     """
-    found = {FIRST: work}
+    found = {FIRST_VIEW: work}
     for name, view in further_views(work.recording_set).items():
         found[name] = Workspace.open(view, work.out / VIEWS / name, work.part)
         for result in ("camera", "planes"):
@@ -64,7 +65,7 @@ def _take_over(work: Workspace, view: Workspace, result: str) -> None:
         if one.exists():
             target = view.out / one.name
             if not target.exists() or target.read_bytes() != one.read_bytes():
-                target.write_bytes(one.read_bytes())
+                write_bytes(target, one.read_bytes())
 
 
 def marks_of(work: Workspace, carrier: Carrier, view: str) -> MarksSeen:
@@ -82,7 +83,8 @@ def marks_of(work: Workspace, carrier: Carrier, view: str) -> MarksSeen:
 def join_step(work: Workspace, settings: Options | None = None, progress: Progress = silent) -> JoinResult:
     """Join the views of a set by the marks of its carrier, and write joined.ply and joint.json.
 
-    A view that has not been measured is measured first, with the calibration in camera.json and planes.json.
+    A view that has not been measured, or was of other pictures or by another calibration, is measured first, with the
+    calibration in camera.json and planes.json; a further view also if it was measured with other `settings`.
 
     Raises
     ------
@@ -97,8 +99,9 @@ def join_step(work: Workspace, settings: Options | None = None, progress: Progre
             todo=Message("views.advice_take_views", "turn the part over with its carrier, scan it again, and put the "
                          "pictures into a folder of their own in there"),
         )  # fmt: skip
-    for place in places.values():
-        if not place.path("cloud").exists():
+    id_ = work.calibration().id
+    for name, place in places.items():
+        if not _is_scanned(place, None if name == FIRST_VIEW else settings or Options(), id_, progress):
             scan_step(place, settings, progress)
     with work.step("join") as log:
         result = joined_views(work, progress)
@@ -111,8 +114,32 @@ def join_step(work: Workspace, settings: Options | None = None, progress: Progre
     return result
 
 
+def _is_scanned(view: Workspace, settings: Options | None, calibration_id: str, progress: Progress) -> bool:
+    """Whether a view's results are of its pictures as they are, of this calibration and, if given, these settings."""
+    if not view.path("cloud").exists() or not view.path("scan").exists():
+        return False
+    if read_scan(view.path("scan")).calibration_id != calibration_id:
+        return False
+    seen, record = view.recording_set, view.record()
+    told = {"excluded": [], **record.settings.get("scan", {})}
+    if settings is not None:
+        wanted = {"excluded": [], **json.loads(to_json(settings.run_settings("scan")))}
+        if any(told.get(name) != value for name, value in wanted.items()):
+            return False
+    names = {seen.name_of(path): path for path in seen.frames}
+    if [frame.name for frame in record.frames] != list(names):
+        return False
+    used = [path for name, path in names.items() if name not in told["excluded"]]
+    paths = seen.with_further(used if seen.reference is None else [seen.reference, *used])
+    pictures = PictureReader(seen)
+    pictures.take_hashes(paths, progress)
+    return all(record.inputs.get(name) == digest for name, digest in pictures.named_hashes(paths))
+
+
 def joined_views(work: Workspace, progress: Progress = silent) -> JoinResult:
     """Join the measured views of a set by the marks of their carrier, and measure the thickness across them.
+
+    Views of the first one's side come before those of the other: the thickness goes from the first view to the last.
 
     Raises
     ------
@@ -122,9 +149,9 @@ def joined_views(work: Workspace, progress: Progress = silent) -> JoinResult:
     carrier = read_carrier(work.recording_set.rig_file.parent / CARRIER)
     calibration = work.calibration()
     places = view_workspaces(work)
-    seen = [marks_of(place, carrier, name) for name, place in places.items()]
+    seen = turned_last(carrier, [marks_of(place, carrier, name) for name, place in places.items()])
     joint = join(carrier, seen, calibration.camera.camera)
-    views = [_view(place, name, calibration) for name, place in places.items()]
+    views = [_view(places[name], name, calibration) for name in joint.views]
     joined = join_clouds(joint, views, scale_sd=calibration.fan.scale_sd)
     require_turned(joint)
     faces = faces_across(joined, progress)
@@ -142,6 +169,12 @@ def joined_views(work: Workspace, progress: Progress = silent) -> JoinResult:
     )
     gauge = of_part(gauge, work.recording_set.rig.part)
     return JoinResult(joined, check, replace(gauge, notes=(*gauge.notes, *check.notes)))
+
+
+def turned_last(carrier: Carrier, seen: Sequence[MarksSeen]) -> list[MarksSeen]:
+    """Sort views so that those of the first one's side of the carrier come first; else they keep their order."""
+    sides = [float(carrier.sides[carrier.index_of(view.numbers)].mean()) > 0.5 if len(view) else False for view in seen]
+    return [view for _, view in sorted(zip(sides, seen, strict=True), key=lambda one: one[0] != sides[0])]
 
 
 def _view(work: Workspace, name: str, calibration: Calibration) -> View:
