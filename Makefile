@@ -82,7 +82,7 @@ below_workbench: compile  ## every test but those of windows: what another Pytho
 	@# 5: there are only proofs in these files
 	$(if $(strip $(BELOW_WORKBENCH)),QT_QPA_PLATFORM=offscreen $(BIN)/pytest -p tests.time_left $(SIDE_BY_SIDE) $(BELOW_WORKBENCH) || [ $$? -eq 5 ])
 
-touched_below_workbench: imports ## every module imported; those tests that name one that has changed since all passed there (.ci/proven)
+touched_below_workbench: imports ## every module imported; the tests nearest to what has changed since all passed there (.ci/proven)
 	@touched=$$($(BIN)/python -m tests.changed second) && $(MAKE) --no-print-directory below_workbench BELOW_WORKBENCH="$$touched"
 
 imports: $(READY)         ## import every module of the program

@@ -8,7 +8,8 @@ nor do the words of a sentence for proofs that read none. Files that are no modu
 
 `proofs` prints the files to run on standard output, and lists on standard error those that are left out; so does
 `second` for the tests that a second Python has to pass, all of which `make test` runs on the first. There a change is
-tried by the tests that name its module, or have changed themselves: what a Python does otherwise, it does there.
+tried by the tests that have changed, name its module, ask for a fixture that names it, or else reach it soonest: what a
+Python does otherwise, it does there.
 `packing` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
 `passed` writes into `.ci/proven` what has passed here since (`tests/passed_proofs.py`), and prints how much that is.
 """
@@ -158,13 +159,31 @@ def touched_proofs(root: Path, proofs: Iterable[Path]) -> list[Path]:
 
 
 def touched_on_second(root: Path, tests: Iterable[Path]) -> list[Path]:
-    """Files of tests that have changed, or name a module that has, since all of them passed on a second Python."""
+    """Files of tests that try what has changed since all of them passed on a second Python.
+
+    These have changed themselves, name a module that has, or ask for a fixture that names what has; what no file names
+    in this way is tried by those that reach it soonest. Those that a change is nearest to come first: what all
+    rest on makes none of them nearer.
+    """
+    files = [*tests]
     changed = changed_definitions(root, _commits(root / PROVEN).get("second"))
     if changed is None:
-        return list(tests)
+        return files
     tree = Tree(root, changed)
+    named = {path: tree.named_by(path) for path in files}
+    by_fixtures = {path: tree.handed_to(tree.begins_with(path)) for path in files}
     modules = {one.partition(":")[0] for one in changed}
-    return [path for path in tests if modules & tree.named_by(path)]
+    touched = {path: modules & named[path] | changed & by_fixtures[path] for path in files}
+    of_all = set.intersection(*touched.values()) if touched else set()
+    of_none = modules - set().union(*named.values())
+    left = {one for one in changed - set().union(*by_fixtures.values()) if one.partition(":")[0] in of_none}
+    for one, nearest in (tree.nearest(left, files) if left else {}).items():
+        for path in nearest:
+            touched[path].add(one)
+    return sorted(
+        (path for path in files if touched[path]),
+        key=lambda path: (touched[path] <= of_all, len(named[path]) / len(touched[path]), path),
+    )
 
 
 def reads_words(path: Path, rests_on: set[str]) -> bool:
@@ -248,7 +267,7 @@ def main() -> None:
     run = touched_on_second(ROOT, files) if second else touched_proofs(ROOT, files)
     left_out = [path.as_posix() for path in files if path not in run]
     if left_out:
-        kind, they = ("tests on a second Python", "name") if second else ("proofs", "rest on")
+        kind, they = ("tests on a second Python", "try") if second else ("proofs", "rest on")
         sys.stderr.write(f"{len(left_out)} of {len(files)} files of {kind} left out, for nothing that they {they} ")
         sys.stderr.write("has changed since they passed (.ci/proven):\n" + "".join(f"  {one}\n" for one in left_out))
     print(*(path.as_posix() for path in run))

@@ -182,19 +182,31 @@ class Tree:
         self._reached = cache(self._reached_by)
         self._given_to_wing = cache(self._arguments_of_wing)
         self._brought = cache(self._brought_to)
+        self._begun = cache(self._begins_with)
         self._codes: dict[str, str] = {}
         for module in self.files:
             if "findings" in module:
                 self._codes |= {code: f"{module}:{code}" for code in self._definitions(module) if "." in code}
 
-    def names_in(self, module: str) -> set[str]:
-        """Modules of ours that a module names itself."""
-        named = (self._reached(f"{module}:{name}" if name else module) for name in self._definitions(module))
-        return {one.partition(":")[0] for found in named for one in found} - {module}
-
     def named_by(self, path: Path) -> set[str]:
-        """Modules that a file of tests names itself, and its own."""
-        return {module_name(path)} | self.names_in(module_name(path))
+        """Modules that a file of tests names itself, also by way of another one that hands a name on, and its own."""
+        return {one.partition(":")[0] for one in self.handed_to(self._whole(module_name(path)))}
+
+    def handed_to(self, begins: Iterable[str]) -> set[str]:
+        """Definitions and those that they name, of a name that a package hands on also the one it stands for."""
+        found = {*begins}
+        waiting = set().union(*map(self._reached, found)) - found
+        while waiting:
+            one = waiting.pop()
+            found.add(one)
+            if self._is_import(one):
+                waiting |= self._reached(one) - found
+        return found
+
+    def _is_import(self, definition: str) -> bool:
+        module, _, name = definition.partition(":")
+        made_by = self._definitions(module).get(name, []) if name else []
+        return any(isinstance(one, ast.Import | ast.ImportFrom) for one in made_by)
 
     def reached(self, definition: str) -> set[str]:
         """Definitions that one names itself."""
@@ -206,15 +218,12 @@ class Tree:
 
     def proof(self, path: Path) -> set[str]:
         """Definitions that a file of tests rests on: what it reaches, and what the fixtures it asks for reach."""
-        return self._closure(self.begins_with(path))
+        return self._closure({*self.begins_with(path)})
 
     def who_reach(self, wanted: Iterable[str], paths: Iterable[Path]) -> dict[str, list[Path]]:
         """Of files of tests those that rest on each of some definitions: by the arrows taken back, all at once."""
         begins = {path: self.begins_with(path) for path in paths}
-        back: dict[str, set[str]] = defaultdict(set)
-        for one in self._closure(set().union(*begins.values())):
-            for reached in self._reached(one):
-                back[reached].add(one)
+        back = self._back_to(begins.values())
         found = {}
         for one in wanted:
             reaching, waiting = {one}, [one]
@@ -225,16 +234,37 @@ class Tree:
             found[one] = [path for path, begun in begins.items() if not begun.isdisjoint(reaching)]
         return found
 
+    def nearest(self, wanted: Iterable[str], paths: Iterable[Path]) -> dict[str, list[Path]]:
+        """For each definition the files of tests from which the fewest arrows lead to it."""
+        begins = {path: self.begins_with(path) for path in paths}
+        back = self._back_to(begins.values())
+        found = {}
+        for one in wanted:
+            reaching, waiting, nearest = {one}, {one}, list[Path]()
+            while waiting and not nearest:
+                nearest = [path for path, begun in begins.items() if not begun.isdisjoint(waiting)]
+                waiting = set().union(*(back.get(name, ()) for name in waiting)) - reaching
+                reaching |= waiting
+            found[one] = nearest
+        return found
+
+    def _back_to(self, begins: Iterable[set[str]]) -> dict[str, set[str]]:
+        """Of all that is reached from these the arrows taken back."""
+        back: dict[str, set[str]] = defaultdict(set)
+        for one in self._closure(set().union(*begins)):
+            for reached in self._reached(one):
+                back[reached].add(one)
+        return back
+
     def begins_with(self, path: Path) -> set[str]:
         """Definitions of a file of tests itself, and of the fixtures that it asks for."""
+        return self._begun(path)
+
+    def _begins_with(self, path: Path) -> set[str]:
         own = module_name(path)
+        conftests = [module_name(folder / "conftest.py") for folder in path.parents]
         asked = _asked_for(ast.walk(parsed(self.root / path)))
-        start = self._whole(own)
-        for folder in path.parents:
-            conftest = module_name(folder / "conftest.py")
-            if conftest in self.files:
-                start |= self._fixtures(conftest, asked)
-        return start
+        return self._whole(own) | self._fixtures([own, *(one for one in conftests if one in self.files)], asked)
 
     def _closure(self, waiting: set[str]) -> set[str]:
         found: set[str] = set()
@@ -378,22 +408,36 @@ class Tree:
         calls = [node for node in nodes if isinstance(node, ast.Call) and ast.unparse(node.func) == "Wing"]
         return [given for call in calls for given in call.keywords]
 
-    def _fixtures(self, conftest: str, asked: set[str]) -> set[str]:
-        """A conftest's own statements, and those of its functions that the tests or pytest itself call.
+    def _fixtures(self, modules: Sequence[str], asked: set[str]) -> set[str]:
+        """Modules' own statements, and those of their functions that the tests or pytest itself call.
 
-        `asked` is extended by the fixtures that these ask for in turn.
+        A fixture may be imported. `asked` is extended by those that they ask for in turn, of whichever module.
         """
-        found, waiting = {conftest}, True
-        functions = {node.name: node for node in parsed(self.files[conftest]).body if isinstance(node, ast.FunctionDef)}
-        while waiting:
-            waiting = False
-            for name, node in functions.items():
-                by_pytest = name.startswith("pytest_") or "autouse=True" in map(ast.unparse, _keywords(node))
-                if (by_pytest or name in asked) and f"{conftest}:{name}" not in found:
-                    found.add(f"{conftest}:{name}")
-                    asked |= _asked_for(ast.walk(node))
-                    waiting = True
+        functions = {
+            f"{module}:{name}": node
+            for module in modules
+            for name in self._definitions(module)
+            if (node := self._fixture(module, name))
+        }
+        found, before = {*modules}, 0
+        while len(found) > before:
+            before = len(found)
+            for one in functions.keys() - found:
+                if (name := one.partition(":")[2]) in asked or _called_by_pytest(name, functions[one]):
+                    found.add(one)
+                    asked |= _asked_for(ast.walk(functions[one]))
         return found
+
+    def _fixture(self, module: str, name: str) -> ast.FunctionDef | None:
+        """The function that is a fixture or a hook of pytest by a name of a module, wherever it stands."""
+        for node in self._definitions(module).get(name, []):
+            if isinstance(node, ast.FunctionDef):
+                is_one = any("fixture" in ast.unparse(one) for one in node.decorator_list)
+                return node if is_one or name.startswith("pytest_") else None
+            if isinstance(node, ast.ImportFrom):
+                target, _, known_as = self._imports(node, module).get(name, "").partition(":")
+                return self._fixture(target, known_as)
+        return None
 
 
 def _walk(statement: ast.AST, left_out: set[int]) -> Iterator[ast.AST]:
@@ -406,10 +450,10 @@ def _walk(statement: ast.AST, left_out: set[int]) -> Iterator[ast.AST]:
             waiting += ast.iter_child_nodes(node)
 
 
-def _keywords(function: ast.FunctionDef) -> Iterator[ast.keyword]:
-    for one in function.decorator_list:
-        if isinstance(one, ast.Call):
-            yield from one.keywords
+def _called_by_pytest(name: str, function: ast.FunctionDef) -> bool:
+    """Whether a function of a conftest is called without being asked for."""
+    given = (one for node in function.decorator_list if isinstance(node, ast.Call) for one in node.keywords)
+    return name.startswith("pytest_") or "autouse=True" in map(ast.unparse, given)
 
 
 def _asked_for(nodes: Iterable[ast.AST]) -> set[str]:

@@ -1,5 +1,6 @@
 """A proof is left out only where nothing that it rests on has changed since all were passed."""
 
+import ast
 import subprocess
 from dataclasses import fields
 from pathlib import Path
@@ -143,6 +144,37 @@ def test_a_proof_is_run_again_when_something_that_it_imports_or_asks_for_has_cha
     assert run_again(checkout) == proofs
 
 
+def test_a_fixture_is_followed_to_where_a_conftest_has_it_from_and_to_what_it_asks_for(checkout):
+    write(checkout, "tests/near/conftest.py", "from tests.far_conftest import taken\n")
+    write(
+        checkout,
+        "tests/far_conftest.py",
+        "import pytest\n@pytest.fixture\ndef taken(measured):\n    import core.loops\n",
+    )
+    write(checkout, "tests/near/test_near.py", f"import pytest\n{MARK}\ndef test_near(taken):\n    pass\n")
+    write(
+        checkout,
+        "tests/test_mine.py",
+        f"from tests.far_conftest import taken\n{MARK}\ndef test_mine(taken):\n    pass\n",
+    )
+    write(checkout, PROVEN, f"proofs {commit_all(checkout)}\n")
+    add_to(checkout, "core/loops.py")
+    assert run_again(checkout) == {"near", "mine"}
+    add_to(checkout, "core/cli/app.py")
+    assert run_again(checkout) == {"near", "mine", "run"}
+    add_to(checkout, "tests/far_conftest.py")
+    assert run_again(checkout) == {"near", "mine", "run"}
+
+
+def test_no_fixture_has_another_name_than_its_function_and_none_comes_as_a_plugin():
+    """Neither is followed."""
+    for path in (ROOT / "tests").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("fixture"):
+                assert not {"name"} & {one.arg for one in node.keywords}, f"{path}:{node.lineno}"
+            assert not (isinstance(node, ast.Name) and node.id == "pytest_" + "plugins"), f"{path}:{node.lineno}"
+
+
 def test_a_module_that_is_gone_counts_as_changed_and_so_does_a_committed_change(checkout):
     (checkout / "core/deep.py").unlink()
     git(checkout, "commit", "-qam", "Gone")
@@ -155,6 +187,7 @@ def test_comments_and_docstrings_are_no_change(checkout):
 
 
 def write(checkout, path, text):
+    (checkout / path).parent.mkdir(exist_ok=True)
     (checkout / path).write_text(text, encoding="utf-8")
 
 
@@ -318,6 +351,55 @@ def test_a_second_python_runs_what_names_a_changed_module_since_all_passed_there
     note(checkout, **dict.fromkeys(PROOFS, "b" * 40))
     take_over(checkout)
     assert on_second(checkout) == {"far", "quick"}, "proofs on the first say nothing of it"
+
+
+@pytest.mark.parametrize(
+    ("path", "files"),
+    [
+        ("constraints.txt", {*PROOFS, "quick"}),
+        ("pyproject.toml", {*PROOFS, "quick"}),
+        ("resources/other.dat", {*PROOFS, "quick"}),
+        ("tests/conftest.py", {*PROOFS, "quick"}),
+        ("tests/helper.py", {"run"}),
+        ("core/behind.py", {"seen"}),
+        ("core/cli/app.py", {"run"}),
+        ("core/wings/rig/commands.py", {"run"}),
+        ("core/wings/rig/findings.py", {"told"}),
+        ("core/deep.py", {"quick"}),
+        ("core/loops.py", set()),
+        ("resources/style.qss", {"seen"}),
+    ],
+)
+def test_a_second_python_tries_every_change_that_a_test_reaches(checkout, path, files):
+    """By fixtures, by a name that a package hands on, and what no test names by those that reach it soonest."""
+    conftest = (checkout / "tests/conftest.py").read_text(encoding="utf-8")
+    write(
+        checkout,
+        "tests/conftest.py",
+        conftest.replace("return 1", "return helper.SMALL") + "import tests.helper as helper\n",
+    )
+    write(checkout, "tests/helper.py", "SMALL = 1\n")
+    write(checkout, "core/behind.py", "class Behind:\n    pass\n")
+    write(checkout, "core/packed.py", "from core.behind import Behind\n")
+    write(
+        checkout,
+        "tests/test_seen.py",
+        f"import pytest, workbench.theme\nfrom core.packed import Behind\n{MARK}\ndef test_seen():\n    pass\n",
+    )
+    write(checkout, PROVEN, f"second {commit_all(checkout)}\n")
+    assert on_second(checkout) == set()
+    add_to(checkout, path)
+    if path == "tests/helper.py":
+        write(checkout, path, "SMALL = 2\n")
+    assert on_second(checkout) == files
+
+
+def test_on_a_second_python_the_nearest_come_first_also_where_all_are_touched(checkout):
+    write(checkout, PROVEN, f"second {commit_all(checkout)}\n")
+    for path in ("constraints.txt", "core/far.py", "core/cli/app.py"):
+        add_to(checkout, path)
+    found = [path.stem for path in touched_on_second(checkout, below_workbench(checkout))]
+    assert {*found[:2]} == {"test_far", "test_run"} and len(found) == 5
 
 
 def test_windows_are_not_tried_on_a_second_python():
