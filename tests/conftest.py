@@ -94,13 +94,13 @@ def _in_another_part(path: Path, config: pytest.Config) -> bool:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Long modules first, by what they took (`tests/durations.py`): one handed out last would keep a process alone.
 
-    Proofs keep their order: of those that a change touches the nearest come first (`tests/changed.py`).
+    Proofs keep their order, as does what has a limit of time: what is nearest to a change first (`tests/changed.py`).
     """
     seed = config.getoption("shuffled")
     if seed is not None:
         _shuffle(items, random.Random(seed))
         return
-    if config.option.markexpr == "accuracy":
+    if config.option.markexpr == "accuracy" or os.environ.get("TRISECT_TRY_UNTIL"):
         return
     seconds = durations.read()
     items.sort(key=lambda item: -seconds.get(item.path.relative_to(config.rootpath).as_posix(), durations.USUAL_S))
