@@ -46,8 +46,10 @@ READ_BY = {
 Versions of libraries count for every proof; translations where windows are proven: no number depends on a text; what no
 proof reads has no module.
 """
-READERS_OF_WORDS = ("core.cli", "core.report", "core.wings.audit", "workbench")
+READERS_OF_WORDS = ("core.cli", "core.report", "core.wings.audit.commands", "workbench")
 """Modules that show sentences: a proof that rests on one of them may read some."""
+SIGNS_OF_WORDS = ("match=", "str(", ".text", "catalogue")
+"""What stands in a module of tests that may read sentences by itself."""
 PACKED_BY = (
     "pyproject.toml", "constraints", "locks/", "bundle/", ".ci/bare_root", ".ci/matrix", "hatch_build.py", "trisect/",
     "resources/desktop/", "core/processes.py", "core/sources.py", "core/code_cache.py", "core/second_process.py",
@@ -151,7 +153,7 @@ def touched_proofs(root: Path, proofs: Iterable[Path]) -> list[Path]:
     touched: dict[Path, float] = {}
     for path, commit in since.items():
         rests_on = tree.proof(path)
-        differs = changed[commit, reads_words(root / path, rests_on)]
+        differs = changed[commit, reads_words(root, rests_on)]
         hit = rests_on if differs is None else rests_on & differs
         if hit:
             touched[path] = len(rests_on) / len(hit)
@@ -186,11 +188,19 @@ def touched_on_second(root: Path, tests: Iterable[Path]) -> list[Path]:
     )
 
 
-def reads_words(path: Path, rests_on: set[str]) -> bool:
-    """Whether a file of proofs may read sentences: of a command, a report, a window, an error."""
-    if any(one.startswith(READERS_OF_WORDS) for one in rests_on):
-        return True
-    return any(sign in path.read_text(encoding="utf-8") for sign in ("match=", "str(", ".text", "catalogue"))
+def reads_words(root: Path, rests_on: set[str]) -> bool:
+    """Whether a file of proofs may read sentences: of a command, a report, a window, an error, also by a helper."""
+    modules = {one.partition(":")[0] for one in rests_on}
+    return any(one.startswith(READERS_OF_WORDS) or _has_signs(root, one) for one in modules)
+
+
+@cache
+def _has_signs(root: Path, module: str) -> bool:
+    path = root / (module.replace(".", "/") + ".py")
+    if not module.startswith("tests.") or not path.exists():
+        return False
+    text = path.read_text(encoding="utf-8")
+    return any(sign in text for sign in SIGNS_OF_WORDS)
 
 
 def tree_to_prove(root: Path) -> str | None:

@@ -19,6 +19,7 @@ from tests.changed import (
     packing_changed,
     proofs_of,
     readers_of,
+    reads_words,
     take_over,
     touched_on_second,
     touched_proofs,
@@ -254,6 +255,22 @@ def test_words_of_a_sentence_count_where_sentences_are_read(checkout, after, pro
     write(checkout, PROVEN, f"proofs {commit_all(checkout)}\n")
     write(checkout, "core/deep.py", f"DEPTH = Message('a.b', '{after}', n=1)\n")
     assert run_again(checkout) == proofs
+
+
+def test_words_that_a_helper_of_tests_reads_count(checkout):
+    write(checkout, "core/deep.py", "DEPTH = Message('a.b', '{n} deep', n=1)\n")
+    write(checkout, "tests/helper.py", "from core import deep\ndef said():\n    return str(deep.DEPTH)\n")
+    write(checkout, "tests/test_told.py", f"from tests.helper import said\n{MARK}\ndef test_told():\n    said()\n")
+    write(checkout, PROVEN, f"proofs {commit_all(checkout)}\n")
+    write(checkout, "core/deep.py", "DEPTH = Message('a.b', '{n} floors down', n=1)\n")
+    assert run_again(checkout) == {"told"}
+
+
+def test_a_proof_of_numbers_reads_no_words_although_it_tells_findings(proofs):
+    """Each that measures reaches the table of findings, and so the wings: only what a wing shows counts."""
+    reading = {path for path, rests_on in proofs.items() if reads_words(ROOT, rests_on)}
+    assert Path("tests/accuracy/test_coverage.py") not in reading
+    assert Path("tests/test_cli.py") in reading and Path("tests/report/test_report_pdf.py") in reading
 
 
 def test_what_a_change_is_nearest_to_is_proven_first(checkout):
