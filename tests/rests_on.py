@@ -192,6 +192,10 @@ class Tree:
         """Modules that a file of tests names itself, also by way of another one that hands a name on, and its own."""
         return {one.partition(":")[0] for one in self.handed_to(self._whole(module_name(path)))}
 
+    def imported_names(self, module: str) -> dict[str, str]:
+        """What the names that a module imports at its top stand for: a module, or a definition of one."""
+        return dict(self._aliases(module))
+
     def handed_to(self, begins: Iterable[str]) -> set[str]:
         """Definitions and those that they name, of a name that a package hands on also the one it stands for."""
         found = {*begins}

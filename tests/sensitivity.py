@@ -4,9 +4,9 @@ Each number that a module of these rooms gives to a name in capitals is halved a
 which no set's result becomes another is done with, others are split until one number is left. A result is another where
 the verdict or the notes are, the thickness by a tenth of its U, U by a tenth, or the points by a twentieth.
 
-What was tried is kept in `build/sensitivity`, by what the program is, so that it goes on where it was cut off. Numbers
-within compiled loops, and those of which another is made when its module is imported, are not reached in this way: they
-are listed apart, as are those of modules that no set uses.
+What was tried is kept in `build/sensitivity`, by what the program and this module are, so that it goes on where it was
+cut off. Numbers within compiled loops, and those of which another is made when its module is imported, are not reached
+in this way: they are listed apart, as are those of modules that no set uses.
 """
 
 from __future__ import annotations
@@ -111,8 +111,8 @@ def _fixed_parts(node: ast.stmt) -> Iterator[ast.AST]:
 class Trial:
     """A program that is imported once, and measures sets with numbers changed in a process of its own each time."""
 
-    def __init__(self, work: Path, kept: Path) -> None:
-        self.work, self.kept = work, kept
+    def __init__(self, work: Path, kept: Path, places: Mapping[str, set[str]]) -> None:
+        self.work, self.kept, self.places = work, kept, places
         self.known: dict[str, Any] = {}
         if kept.exists():
             self.known = dict(map(json.loads, kept.read_text(encoding="utf-8").splitlines()))
@@ -142,7 +142,7 @@ class Trial:
                 setrlimit(RLIMIT_CPU, (AT_MOST_S + 60, AT_MOST_S + 60))
                 _forget()
                 for one in group:
-                    _change(one, one.times(factor))
+                    change(self.places[str(one)], one.times(factor))
                 with tempfile.TemporaryDirectory() as folder:
                     begun = time.process_time()
                     found = self._measured(name, Path(folder))
@@ -199,30 +199,46 @@ def _ours() -> list[ModuleType]:
     return [module for name, module in list(sys.modules.items()) if name.partition(".")[0] == "core" and module]
 
 
-def _change(number: Number, value: float) -> None:
-    """Give a name another value, in its module and wherever it is imported by that name."""
-    of = sys.modules.get(number.module)
-    if of is None:
-        return
-    before = vars(of)[number.name]
-    for module in _ours():
-        if vars(module).get(number.name) is before:
-            setattr(module, number.name, value)
+def takers(tree: Tree, taken: Iterable[Number]) -> dict[str, set[str]]:
+    """By number the places that have it under a name: its module, and those that import it from there, however far."""
+    found = {str(one): {str(one)} for one in taken}
+    back: dict[str, set[str]] = {}
+    for module in tree.files:
+        if module.startswith("core"):
+            for name, target in tree.imported_names(module).items():
+                back.setdefault(target, set()).add(f"{module}:{name}")
+    for places in found.values():
+        waiting = {*places}
+        while waiting:
+            waiting = set().union(*(back.get(one, ()) for one in waiting)) - places
+            places |= waiting
+    return found
+
+
+def change(places: Iterable[str], value: float) -> None:
+    """Give names of modules another value, where these are imported and have them."""
+    for module, _, name in (one.partition(":") for one in places):
+        of = sys.modules.get(module)
+        if of is not None and name in vars(of):
+            setattr(of, name, value)
 
 
 def those_that_matter(
     group: Sequence[Number], differs: Callable[[Sequence[Number]], str], until: Callable[[], bool]
-) -> Iterator[tuple[Number, str]]:
-    """The numbers of a group that make another result, each with its set; a group that makes none is not split."""
+) -> Iterator[tuple[Sequence[Number], str]]:
+    """The numbers of a group that make another result, one by one, each with its set.
+
+    A group that makes none is not split; one that does while neither of its halves does comes as a whole.
+    """
     if until() or not group:
         return
     by = differs(group)
     if by and len(group) == 1:
-        yield group[0], by
+        yield group, by
     elif by:
         half = len(group) // 2
-        yield from those_that_matter(group[:half], differs, until)
-        yield from those_that_matter(group[half:], differs, until)
+        found = [one for part in (group[:half], group[half:]) for one in those_that_matter(part, differs, until)]
+        yield from found or ([] if until() else [(group, by)])
 
 
 def main() -> None:
@@ -236,11 +252,11 @@ def main() -> None:
     every = numbers(tree, given.rooms)
     fixed = out_of_reach(tree, every)
     files = (path for name, path in sorted(tree.files.items()) if name.startswith("core"))
-    version = hashlib.sha256("".join(path.read_text("utf-8") for path in files).encode())
+    version = hashlib.sha256("".join(path.read_text("utf-8") for path in (*files, Path(__file__))).encode())
     kept = ROOT / "build" / "sensitivity" / f"{version.hexdigest()[:16]}.jsonl"
     kept.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="trisect-sensitivity-") as folder:
-        trial = Trial(Path(folder), kept)
+        trial = Trial(Path(folder), kept, takers(tree, every))
         print(*(f"{name}: {found}" for name, found in trial.usual.items()), sep="\n", flush=True)
         unused = {str(one) for one in every if one.module not in sys.modules}
         tried = [one for one in every if str(one) not in fixed | unused]
@@ -249,9 +265,11 @@ def main() -> None:
         for group in groups:
             for factor in TIMES:
                 differs = lambda some, factor=factor: trial.differs(some, factor)  # noqa: E731
-                for number, by in those_that_matter(group, differs, lambda: _late(given.minutes)):
-                    matter.add(str(number))
-                    print(f"{number} = {number.value:g}, times {factor:g}: {by}", flush=True)
+                for some, by in those_that_matter(group, differs, lambda: _late(given.minutes)):
+                    matter |= {str(one) for one in some}
+                    together = "" if len(some) == 1 else "ONLY TOGETHER "
+                    told = ", ".join(f"{one} = {one.value:g}" for one in some)
+                    print(f"{together}{told}, times {factor:g}: {by}", flush=True)
             if _late(given.minutes):
                 break
             done += len(group)

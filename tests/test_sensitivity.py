@@ -1,9 +1,12 @@
 """Numbers for tuning are found, and those that matter by changing many at once."""
 
+import sys
+from types import SimpleNamespace
+
 import pytest
 
 from tests.rests_on import Tree
-from tests.sensitivity import Number, is_another, numbers, out_of_reach, those_that_matter
+from tests.sensitivity import Number, change, is_another, numbers, out_of_reach, takers, those_that_matter
 
 MODULE = """from core.compiled import compiled
 LIMIT = 3.0
@@ -59,9 +62,43 @@ def test_groups_without_another_result_are_not_split():
         asked.append(len(some))
         return "block" if {"N5", "N40"} & {one.name for one in some} else ""
 
-    found = [number.name for number, by in those_that_matter(group, differs, lambda: False) if by == "block"]
+    found = [some[0].name for some, by in those_that_matter(group, differs, lambda: False) if by == "block"]
     assert found == ["N5", "N40"]
     assert len(asked) < 25
+
+
+def test_numbers_that_make_another_result_only_together_are_told_as_a_group():
+    group = [Number("m", f"N{i}", 1.0) for i in range(8)]
+
+    def differs(some):
+        return "block" if {"N1", "N6"} <= {one.name for one in some} else ""
+
+    assert [*those_that_matter(group, differs, lambda: False)] == [(group, "block")]
+
+
+def test_a_number_is_changed_where_it_is_imported_and_not_where_another_is_the_same(tmp_path, monkeypatch):
+    texts = {
+        "one": "LIMIT = 3.0\n",
+        "taker": "from core.scan.one import LIMIT\n",
+        "renamed": "from core.scan.taker import LIMIT as _MOST\n",
+        "other": "LIMIT = 3.0\n",
+    }
+    (tmp_path / "core" / "scan").mkdir(parents=True)
+    for name, text in texts.items():
+        (tmp_path / "core" / "scan" / f"{name}.py").write_text(text)
+    places = takers(Tree(tmp_path), [Number("core.scan.one", "LIMIT", 3.0)])["core.scan.one:LIMIT"]
+    assert places == {"core.scan.one:LIMIT", "core.scan.taker:LIMIT", "core.scan.renamed:_MOST"}
+    value = 3.0  # one object, as a compiled module may have it
+    modules = {name: SimpleNamespace(LIMIT=value, _MOST=value) for name in texts}
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, f"core.scan.{name}", module)
+    change(places, 6.0)
+    assert (modules["one"].LIMIT, modules["taker"].LIMIT, modules["renamed"]._MOST, modules["other"].LIMIT) == (
+        6,
+        6,
+        6,
+        3,
+    )
 
 
 def test_where_time_is_up_nothing_more_is_tried():
