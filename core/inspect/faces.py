@@ -81,6 +81,7 @@ def find_faces(
     *,
     margin_mm: float = 1.5,
     nominal_mm: float | None = None,
+    beside: NDArray[np.bool_] | None = None,
     seed: int = 0,
     progress: Progress = silent,
 ) -> FacePair:
@@ -94,6 +95,8 @@ def find_faces(
         Points nearer than this to the edge of their face are left out: stripes are biased there.
     nominal_mm
         Thickness of the pair that is meant; None: the largest is taken.
+    beside
+        (N,) which points lie on boards beside the part: a pair with such a face counts only where there is no other.
     seed
         Of the random search; the same seed gives the same faces.
     progress
@@ -118,6 +121,8 @@ def find_faces(
     ]
     if not pairs:
         raise _no_pair(cloud, large, tolerance)
+    if beside is not None:
+        pairs = [pair for pair in pairs if not any(_mostly(beside, plane) for plane in pair)] or pairs
     pairs.sort(key=lambda pair: sorted(plane.region.area_mm2 for plane in pair), reverse=True)
     least = LIKE_SIZE * min(plane.region.area_mm2 for plane in pairs[0])
     found = [_Pair.of(cloud, *pair) for pair in pairs if min(plane.region.area_mm2 for plane in pair) >= least]
@@ -126,6 +131,11 @@ def find_faces(
         alike.sort(key=lambda one: abs(one.candidate.thickness_mm - nominal_mm))
     candidates = tuple(one.outlined(cloud) for one in alike) if len(alike) > 1 else ()
     return FacePair(alike[0].upper.region.indices, alike[0].lower.region.indices, candidates)
+
+
+def _mostly(flags: NDArray[np.bool_], plane: FoundPlane) -> bool:
+    """Whether most points of a face are flagged."""
+    return bool(np.mean(flags[plane.region.indices]) > 0.5)
 
 
 def _no_pair(cloud: Cloud, faces: list[FoundPlane], tolerance: float) -> InputError:

@@ -298,6 +298,18 @@ def test_of_two_blocks_that_near_the_nominal_is_measured_and_proves_nothing() ->
         assert (u, v) == pytest.approx(tuple(amid), abs=20.0)
 
 
+def test_a_face_of_a_board_beside_the_part_is_not_meant_where_there_is_another() -> None:
+    cloud, _ = two_blocks()
+    asked = find_faces(cloud, nominal_mm=25.0)
+    assert len(asked.candidates) > 1
+    beside = np.zeros(len(cloud), dtype=bool)
+    beside[asked.upper] = True
+    found = find_faces(cloud, nominal_mm=25.0, beside=beside)
+    assert not beside[found.upper].any() and len(found.candidates) < len(asked.candidates)
+    alone = find_faces(cloud, nominal_mm=25.0, beside=np.ones(len(cloud), dtype=bool))
+    assert np.array_equal(alone.upper, asked.upper), "a part that stands on a board is measured from it"
+
+
 def test_a_pair_whose_outlines_are_taken_as_regions_is_confirmed() -> None:
     cloud, covariance = two_blocks()
     asked = measure_gauge(cloud, errors=PointErrors(covariance), nominal_mm=40.0, tolerance_mm=1.0)

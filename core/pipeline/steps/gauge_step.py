@@ -17,8 +17,8 @@ from core.files.results.ply import read_cloud
 from core.files.results.scan_file import ScanFile, read_scan
 from core.findings.table import note_of
 from core.inspect.causes import CHANGES
-from core.inspect.faces import OneFace
-from core.inspect.gauge import adjusted, measure_gauge
+from core.inspect.faces import FacePair, OneFace, find_faces
+from core.inspect.gauge import Polygons, adjusted, measure_gauge
 from core.inspect.plan.temperature import correction_to_reference, temperature_of
 from core.inspect.results import GaugeResult
 from core.inspect.uncertainty.part import Part
@@ -32,6 +32,7 @@ from core.scan.fan_watch import WARM_UP
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Reason, Suspect, cause_first
+from core.scan.known_planes.points_on_planes import lying_on
 from core.scan.single_change import AS_CALIBRATED
 from core.scan.standstill import HOLD_STILL
 from core.scan.surface.cloud import FAN, Cloud
@@ -71,9 +72,12 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
-        regions = _regions(spec)
+        regions: Polygons | FacePair | None = _regions(spec)
         why = partial(reasons_of_no_faces, scan, cloud, calibration.fan.bends)
         with _no_thickness(), cause_first(why, lambda: scan.causes), single_face_as_cause(scan, cloud):
+            if regions is None and scan.planes:
+                beside = lying_on(cloud.points, cloud.uv, scan.planes)
+                regions = find_faces(cloud, nominal_mm=spec.nominal_mm, beside=beside, progress=progress)
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),

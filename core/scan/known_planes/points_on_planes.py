@@ -34,6 +34,8 @@ OFF_LINE_PX = 1.0
 """Px beside the common line, and five standard uncertainties, beyond which a cell lies on something else."""
 LEAST_CELLS = 2
 """Cells of a frame on a plane, at least: with one the line has no direction."""
+ON_PLANE_MM = 1.0
+"""Distance in mm from a known plane within which a point of the surface is one of its board."""
 BESIDE = 1.5
 """Stripe σ about a point within which the board has to be free of print as well: the brightness edge of a mark would
 pull it."""
@@ -64,6 +66,16 @@ class PlaneAgreement:
     rms_mm: float
     pi: Array
     outline: Array
+
+
+def lying_on(points: Array, uv: Array, planes: Sequence[PlaneAgreement]) -> NDArray[np.bool_]:
+    """Flag those `points` (N, 3) in mm, seen at `uv` (N, 2), that lie on one of the known planes."""
+    flags = np.zeros(len(points), dtype=np.bool_)
+    for plane in planes:
+        near = np.abs(points @ plane.pi - 1) < ON_PLANE_MM * np.linalg.norm(plane.pi)
+        outline = plane.outline.astype(np.float32)
+        flags[near] |= [cv2.pointPolygonTest(outline, one, False) >= 0 for one in uv[near].tolist()]
+    return flags
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import pytest
 from core.image.stripes.centreline import Centreline
 from core.model import LightPlane
 from core.scan.known_planes.known_plane import Control
-from core.scan.known_planes.points_on_planes import points_on_planes
+from core.scan.known_planes.points_on_planes import PlaneAgreement, lying_on, points_on_planes
 from core.scan.network.adjustment import solve_network
 from core.scan.network.datum import free_directions
 from tests.scan.known_planes.planes_on_paper import CORNER, PLACES, board, scan_on_paper
@@ -100,3 +100,12 @@ def test_a_part_before_the_board_and_its_print_are_left_out():
 
 def _below(line: Centreline, v: float) -> Centreline:
     return line.select(line.uv[:, 1] > v)
+
+
+def test_points_on_a_board_are_those_within_its_outline_and_near_its_plane():
+    known = scan_on_paper(1, CORNER[:1], count=4).control.planes[0]
+    fit = PlaneAgreement(known.name, 1, 1, 0, 0.0, known.pi, known.outline)
+    uv = np.array([[500.0, 200.0], [500.0, 200.0], [500.0, 1300.0]])
+    rays = CAMERA.rays(uv)
+    points = rays / (rays @ known.pi)[:, None] * np.array([[1.0], [0.99], [1.0]])
+    assert lying_on(points, uv, [fit]).tolist() == [True, False, False]
