@@ -114,7 +114,6 @@ REASONS: Mapping[str, Message] = {
     "few_marks_fit": Message("doubt.few_marks_fit", "too few of the carrier's marks fit each other"),
     "marks_apart": Message("doubt.marks_apart", "two of the carrier's marks are not as far apart as calibrated"),
     "joint_hangs_on_one_mark": Message("doubt.joint_hangs_on_one_mark", "the joint hangs on one mark"),
-    "joint_two_ways": Message("doubt.joint_two_ways", "there are two ways to put the views together"),
     "master_doubted": Message("doubt.master_doubted", "the master that it is compared with proves nothing"),
     "results_doubted": Message("doubt.results_doubted", "results that it rests on prove nothing"),
     "scatter_alone": Message("doubt.scatter_alone", "U holds the scatter of the repeats alone"),

@@ -33,9 +33,6 @@ ROWS = (
             "In the view {view} marks {first} and {second} are {mm:+.3f} mm farther apart than calibrated, {z:.1f} "
             "times the uncertainty of that: one of them was moved, or the carrier is bent. Calibrate it again, and "
             "take the views again.", fact="marks_apart"),
-    Finding("views.two_ways", Weight.GRAVE, Effect.NO_PROOF,
-            "There are two ways to put the views together: the marks fit another way, too, off by only {mm:.3f} mm. "
-            "Add a mark, so that the layout has no symmetry.", fact="joint_two_ways"),
     Finding("views.marks_left_out", Weight.CAUTION, Effect.NONE,
             "Of the view {view} {n} mark is left out, as it does not fit the others: {numbers}. Look whether it is "
             "smeared, in glare, or moved.",

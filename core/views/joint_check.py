@@ -18,14 +18,12 @@ from core.image.targets.pose import cross_matrices
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
-from core.views.carrier import FEWEST_MARKS, MarkKind, second_fit_mm
+from core.views.carrier import FEWEST_MARKS
 from core.views.joined_cloud import JoinedCloud
 from core.views.joint import Joint
 
 CHANCE = 1e-4
 """Chance of a false alarm that is taken, by each test of one joint."""
-TWO_WAYS = 10.0
-"""The next best way to lay marks without numbers must miss by so many times their uncertainty."""
 MOST_LEFT_OUT = 0.25
 """Share of a view's marks that may be left out: beyond it, which of them are wrong is a guess."""
 NEAR_MM, ALONG, REACH = 1.0, 0.8, 0.05
@@ -102,8 +100,6 @@ class JointCheck:
     u_slip_mm
         Standard uncertainty to which they show that the part has not slipped from the first view to the last, along
         where the joint counts.
-    second_fit_mm
-        By how much the next best way to lay the marks misses; infinite for marks with numbers.
     """
 
     joint: Joint
@@ -115,7 +111,6 @@ class JointCheck:
     without: tuple[WithoutMark, ...]
     overlaps: tuple[Overlap, ...] = ()
     u_slip_mm: float = SLIP_MM
-    second_fit_mm: float = np.inf
 
     @property
     def doubts(self) -> Doubts:
@@ -191,8 +186,6 @@ class JointCheck:
                     u_mm=worst_one.u_mm,
                 )
             )
-        if joint.carrier.kind is MarkKind.BALL and self.second_fit_mm < TWO_WAYS * float(joint.carrier.sigma.max()):
-            found.append(note_of("views.two_ways", mm=self.second_fit_mm))
         return found
 
 
@@ -212,7 +205,6 @@ def check_joint(joint: Joint, camera: Camera, at: Array, along: Array, overlaps:
 
     by_motion = along @ np.hstack([-cross_matrices(at[None])[0], np.eye(3)])
     u_mm = float(np.sqrt(by_motion @ joint.covariance(len(joint.views) - 1) @ by_motion))
-    second = second_fit_mm(joint.carrier) if joint.carrier.kind is MarkKind.BALL else np.inf
     return JointCheck(
         joint,
         joint.chi2,
@@ -223,7 +215,6 @@ def check_joint(joint: Joint, camera: Camera, at: Array, along: Array, overlaps:
         tuple(_without_each(joint, by_motion)),
         tuple(overlaps),
         _u_of_slip(joint.views, overlaps, along),
-        float(second),
     )
 
 

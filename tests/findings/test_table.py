@@ -28,7 +28,7 @@ ANSWERS = {"readjust.undone"}
 """What a command answers."""
 OF_ONE_RESULT = {
     "carrier_as_printed", "few_marks_fit", "marks_apart", "part_may_have_slipped", "slip_unseen",
-    "faces_not_spanned", "joint_hangs_on_one_mark", "joint_inside_out", "joint_two_ways", "light_skewed",
+    "faces_not_spanned", "joint_hangs_on_one_mark", "joint_inside_out", "light_skewed",
     "marks_disagree", "master_doubted", "overlap_disagrees", "several_faces", "u_incomplete",
 }  # fmt: skip
 """Facts that take away the proof of one result."""

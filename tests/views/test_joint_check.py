@@ -7,7 +7,6 @@ import pytest
 
 from core.errors import InputError
 from core.image.targets.pose import cross_matrices
-from core.views.carrier import Carrier, MarkKind, fits_of, second_fit_mm
 from core.views.joint import join
 from core.views.joint_check import Overlap, check_joint
 from core.views.marks_seen import MarksSeen
@@ -174,28 +173,6 @@ def test_a_slip_is_shown_by_views_between_as_well():
     ]
     assert u[0] > 1.0
     assert u[1] == pytest.approx(np.sqrt(2) * 0.01, rel=0.01)
-
-
-def balls(positions):
-    count = len(positions)
-    return Carrier(np.arange(count), np.zeros(count, int), positions, 1e-4 * np.eye(3 * count), 5.0, MarkKind.BALL)
-
-
-def test_a_symmetric_layout_of_balls_fits_two_ways_and_an_uneven_one_does_not():
-    square = np.array([[-60.0, -60, 0], [60, -60, 0], [60, 60, 0], [-60, 60, 0]])
-    assert second_fit_mm(balls(square)) < 1e-6
-    uneven = square + np.array([[0, 0, 0], [5, -11, 0], [17, 3, 8], [-2, 9, 0]])
-    assert second_fit_mm(balls(uneven)) > 1.0
-
-
-def test_marks_without_numbers_are_laid_on_the_carrier_as_they_lie():
-    rng = np.random.default_rng(4)
-    positions = rng.uniform(-80, 80, (6, 3))
-    order = rng.permutation(6)[:5]
-    pose = poses()[0]
-    (best, *_) = fits_of(pose.apply(positions[order]) + rng.normal(0, 0.01, (5, 3)), positions, 0.2)
-    assert best.marks == tuple(order)
-    assert best.rms_mm < 0.05
 
 
 def test_a_view_of_marks_elsewhere_is_a_pair_off():

@@ -1,7 +1,6 @@
 """carrier.toml: the reference marks of a carrier, as calibrated, read and written.
 
-kind = "ring"                 # or "ball"
-radius_mm = 3.5               # of the discs, or the certified one of the balls
+radius_mm = 3.5               # of the discs
 scaled_by_target = true       # calibrated by the rig's own plane target; left out: it was not
 as_printed = false            # nobody has measured the marks
 celsius = 21.5                # of the carrier while the views are taken; positions are at 20 °C
@@ -36,7 +35,7 @@ from core.image.targets.coded_rings import code_words
 from core.inspect.uncertainty.part import TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array
-from core.views.carrier import Carrier, MarkKind
+from core.views.carrier import Carrier
 
 _SIDES = "AB"
 _AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
@@ -63,7 +62,7 @@ class _Mark(Table):
 class _CarrierTables(Table):
     """carrier.toml."""
 
-    kind: Literal["ring", "ball"] = "ring"
+    kind: Literal["ring"] = Field("ring", description=label('"ring": balls are not found in views yet'))
     radius_mm: float = Field(gt=0, le=100, allow_inf_nan=False, description=label("a length in mm above 0"))
     scaled_by_target: bool = False
     as_printed: bool = False
@@ -101,7 +100,6 @@ def read_carrier(path: Path) -> Carrier:
             np.array([mark.position_mm for mark in marks]),
             _covariance(tables, path),
             tables.radius_mm,
-            MarkKind(tables.kind),
             tables.scaled_by_target,
             tables.name,
             TargetTemperature(tables.celsius, tables.u_celsius, tables.alpha_per_K, tables.u_alpha_per_K),
@@ -159,7 +157,6 @@ def write_carrier(path: Path, carrier: Carrier) -> None:
     )
     tables = {
         "name": carrier.name,
-        "kind": str(carrier.kind),
         "radius_mm": carrier.radius_mm,
         "scaled_by_target": carrier.scaled_by_target,
         "as_printed": carrier.as_printed,
