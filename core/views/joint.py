@@ -43,6 +43,8 @@ from core.views.marks_seen import MarksSeen
 
 ROUNDS, HUBER_ROUNDS = 30, 10
 """Of the robust fit, and how many of them by Huber's weights."""
+MARKS_HUBER, MARKS_TUKEY = 1.5 * HUBER, 1.5 * TUKEY
+"""Limits of the lengths of standardised residuals, which have two coordinates."""
 SETTLED = 1e-9
 """Step in rad, and in shares of mm, at which it has settled."""
 FREE = 1e3
@@ -201,9 +203,9 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
         length = np.linalg.norm(misfit.reshape(-1, 2), axis=1)
         scale = max(1.0, float(np.median(length)) / 1.177)
         rule = (
-            huber_weights(length / scale, 1.5 * HUBER)
+            huber_weights(length / scale, MARKS_HUBER)
             if round_ < HUBER_ROUNDS
-            else tukey_weights(length / scale, 1.5 * TUKEY)
+            else tukey_weights(length / scale, MARKS_TUKEY)
         )
         weights = np.split(np.asarray(rule), np.cumsum([len(view) for view in seen])[:-1])
         _require_kept(seen, weights)
@@ -217,7 +219,7 @@ def join(carrier: Carrier, seen: Sequence[MarksSeen], camera: Camera) -> Joint:
     design, misfit = _equations(carrier, positions, poses, seen, camera, roots)
     rule = np.concatenate(weights)
     length = np.linalg.norm(misfit.reshape(-1, 2), axis=1)
-    squares = float(huber_weights(length, 1.5 * HUBER) @ length**2 + zeta @ zeta)
+    squares = float(huber_weights(length, MARKS_HUBER) @ length**2 + zeta @ zeta)
     redundancy = float(len(misfit) - 6 * len(seen))
     scale = float(np.sqrt(max(1.0, squares / max(redundancy, 1.0))))
     normal, weighted = _normal(design, np.repeat(rule, 2), scale, len(seen))

@@ -18,12 +18,15 @@ from core.image.targets.pose import cross_matrices
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
+from core.model.robust import huber_weights
 from core.views.carrier import FEWEST_MARKS
 from core.views.joined_cloud import JoinedCloud
-from core.views.joint import Joint
+from core.views.joint import MARKS_HUBER, Joint
 
 CHANCE = 1e-4
 """Chance of a false alarm that is taken, by each test of one joint."""
+MARKS_CHANCE = 1e-3
+"""The same of the marks' residuals: a tilt hides most of what half the marks of a side are off together."""
 MOST_LEFT_OUT = 0.25
 """Share of a view's marks that may be left out: beyond it, which of them are wrong is a guess."""
 NEAR_MM, ALONG, REACH = 1.0, 0.8, 0.05
@@ -88,7 +91,7 @@ class JointCheck:
     Parameters
     ----------
     chi2, redundancy, chance
-        Of the marks' residuals, and the chance that they are larger.
+        Of the marks' residuals, and the chance that they are larger, of all views or of one among them.
     u_mm
         Standard uncertainty of the joint, by marks and carrier, where and along which it counts.
     pairs
@@ -156,7 +159,7 @@ class JointCheck:
                 found.append(
                     note_of("views.few_marks_fit", view=seen.view, n=kept, seen=len(seen), least=FEWEST_MARKS + 1)
                 )
-        if self.chance < CHANCE:
+        if self.chance < MARKS_CHANCE:
             off = [np.linalg.norm(residuals, axis=1) for residuals in joint.residuals]
             view = int(np.argmax([px.max() for px in off]))
             worst = int(np.argmax(off[view]))
@@ -209,13 +212,27 @@ def check_joint(joint: Joint, camera: Camera, at: Array, along: Array, overlaps:
         joint,
         joint.chi2,
         joint.redundancy,
-        float(chi2.sf(joint.chi2, max(joint.redundancy, 1.0))),
+        min(
+            float(chi2.sf(joint.chi2, max(joint.redundancy, 1.0))),
+            *(
+                len(joint.views) * float(chi2.sf(_squares(joint, view), 2 * len(seen) - 6))
+                for view, seen in enumerate(joint.seen)
+            ),
+        ),
         u_mm,
         tuple(_worst_pair(joint, camera, view) for view in range(len(joint.views))),
         tuple(_without_each(joint, by_motion)),
         tuple(overlaps),
         _u_of_slip(joint.views, overlaps, along),
     )
+
+
+def _squares(joint: Joint, view: int) -> float:
+    """Sum of the squared standardised residuals of a view's marks by Huber's weights."""
+    residuals = joint.residuals[view]
+    whitened = np.linalg.solve(joint.seen[view].covariance, residuals[..., None])[..., 0]
+    squares = np.einsum("ni,ni->n", residuals, whitened)
+    return float(huber_weights(np.sqrt(squares), MARKS_HUBER) @ squares)
 
 
 def _u_of_slip(views: Sequence[str], overlaps: Sequence[Overlap], along: Array) -> float:

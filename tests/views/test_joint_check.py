@@ -71,8 +71,6 @@ def test_what_a_hurt_carrier_does_is_told_or_within_U(change):
 
 @pytest.mark.parametrize(("marks", "axis", "mm"), [(5, 2, 0.3), (6, 2, 0.3), (5, 0, 0.5)])
 def test_where_many_marks_have_moved_nothing_is_proven(marks, axis, mm):
-    """Marks all round the rim: of a half of it bent as a whole, only an overlap tells."""
-
     def change(positions):
         positions[12 : 12 + 2 * marks : 2, axis] += mm
         return positions
@@ -85,6 +83,17 @@ def test_where_many_marks_have_moved_nothing_is_proven(marks, axis, mm):
             assert refused.code == "views.too_few_marks_fit"
         else:
             assert check.doubts or abs(error) <= 2 * u
+
+
+def test_five_marks_side_by_side_lifted_together_prove_nothing():
+    """Of six or seven a tilt hides so much that marks do not tell; the overlap must."""
+
+    def change(positions):
+        positions[12:17, 2] += 0.3
+        return positions
+
+    known = carrier()
+    assert "marks_disagree" in told(checked(known, hurt(known, 0, change))[0])
 
 
 def test_with_as_many_marks_as_hold_a_view_nothing_is_proven():
