@@ -13,7 +13,7 @@ from core.scan.common_errors import CommonErrors
 from core.views.carrier import Carrier
 from core.views.joint import join
 from core.views.marks_seen import MarksSeen
-from tests.views.made import CAMERA, SIGMA_PX, both_seen, carrier, exact, poses
+from tests.views.made import CAMERA, SIGMA_PX, both_seen, carrier, exact, poses, seen_in
 
 AT = np.array([[0.0, 50.0, 535.0]])
 """A point of the part."""
@@ -95,16 +95,18 @@ def test_marks_of_another_carrier_fit_no_pose():
         join(other, (first, second), CAMERA)
 
 
-def test_marks_on_one_line_leave_a_turn_free():
+@pytest.mark.parametrize(
+    ("beside_mm", "refusal"),
+    [(0.0, "its marks do not lie as on the carrier"), (0.1, "its marks leave it free: turning about")],
+)
+def test_marks_on_one_line_hold_no_view(beside_mm, refusal):
     known = exact(carrier(marks=6))
     line = known.positions.copy()
-    line[:, 1] = 0.0
+    line[:, 1] = np.tile([beside_mm, -beside_mm], 6)
     line[:, 0] = np.tile(np.linspace(-80, 80, 6), 2)
     on_line = Carrier(known.numbers, known.sides, line, known.covariance, known.radius_mm)
     rng = np.random.default_rng(1)
-    from tests.views.made import seen_in
-
     first, second = poses()
     seen = (seen_in(on_line, first, 0, rng, "scan"), seen_in(on_line, second, 1, rng, "turned"))
-    with pytest.raises(InputError, match=r"scan: its marks (leave it free|do not lie)"):
+    with pytest.raises(InputError, match=f"scan: {refusal}"):
         join(on_line, seen, CAMERA)
