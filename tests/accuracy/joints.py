@@ -26,7 +26,7 @@ from core.simulate.scenario import Scenario
 from core.simulate.scene.carrier import calibrated_carrier, pose_table_carrier
 from core.simulate.scene.stage import table_pose
 from core.simulate.truth import load_truth
-from core.views.joint import join
+from core.views.joint import Joint, join
 from core.views.joint_check import check_joint
 from core.views.marks_seen import see_marks
 
@@ -76,16 +76,22 @@ def figures(result: JoinResult, true_mm: float) -> dict[str, Any]:
     }
 
 
+def joint_by_marks(case: Scenario) -> Joint:
+    """Join both views by the marks in two rendered references, the camera known."""
+    rig, carrier = scenario_rig(case), calibrated_carrier(case)
+    both = zip((case, turned_over(case)), VIEWS, strict=True)
+    seen = [see_marks(scan_of(one, rig)[0].reference(), carrier, view) for one, view in both]
+    return join(carrier, seen, rig.camera)
+
+
 def marks_alone(seed: int, scale: float, **effects: Any) -> dict[str, Any]:
     """The joint by the marks in two rendered references, the camera known: its error along the thickness.
 
     Of what the marks and the carrier leave, without a scan: a hundredth of its time.
     """
     case = scenario(seed, scale, 0, **effects)
-    rig, carrier = scenario_rig(case), calibrated_carrier(case)
+    rig, joint = scenario_rig(case), joint_by_marks(case)
     both = (case, turned_over(case))
-    seen = [see_marks(scan_of(one, rig)[0].reference(), carrier, view) for one, view in zip(both, VIEWS, strict=True)]
-    joint = join(carrier, seen, rig.camera)
     first, second = (table_pose(one.setup) @ pose_table_carrier(one) for one in both)
     at, up = first.translation, first.rotation[:, 2]
     off = ((joint.pose(1) @ (first @ second.inverse()).inverse()).apply(at[None])[0] - at) @ up
@@ -97,7 +103,7 @@ def marks_alone(seed: int, scale: float, **effects: Any) -> dict[str, Any]:
         "u": check.u_mm,
         "U": 2 * check.u_mm,
         "told": sorted(told),
-        "marks": [len(one) for one in seen],
+        "marks": [len(one) for one in joint.seen],
         "chi2": joint.chi2 / joint.redundancy,
     }
 

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.accuracy.joints import figures, marks_alone, measure_joint, scenario
+from core.errors import InputError
+from core.views.thickness import require_turned
+from tests.accuracy.joints import figures, joint_by_marks, marks_alone, measure_joint, scenario
 
 
 @pytest.mark.accuracy
@@ -30,3 +32,18 @@ def test_a_hurt_carrier_is_told_or_the_joint_is_within_its_U(effect):
     for seed in (1, 2):
         found = marks_alone(seed, 0.5, **effect)
         assert found["told"] or abs(found["error"]) <= found["U"]
+
+
+@pytest.mark.accuracy
+def test_a_part_that_was_not_turned_over_has_no_thickness_across():
+    require_turned(joint_by_marks(scenario(1, 0.25, 0)))
+    with pytest.raises(InputError, match="turned: it shows side A of the carrier, as the first view does"):
+        require_turned(joint_by_marks(scenario(1, 0.25, 0, again=True)))
+
+
+@pytest.mark.accuracy
+def test_a_part_that_has_slipped_through_its_carrier_is_measured_wrong_by_that_and_proves_nothing(tmp_path):
+    slipped = 2.0
+    found = figures(*measure_joint(scenario(1, 0.25, slipped_mm=slipped), tmp_path))
+    assert abs(abs(found["error"]) - slipped) <= found["U"]
+    assert found["doubts"] != []
