@@ -295,7 +295,7 @@ def _first_pose(carrier: Carrier, seen: MarksSeen, camera: Camera) -> Pose:
             where=seen.view,
             todo=Message(
                 "views.advice_right_carrier",
-                "give the carrier.toml of this carrier, calibrated anew if marks were moved",
+                "give the carrier.toml of this carrier, and have the marks measured again if they were moved",
             ),
         )
     return Pose(Rotation.from_rotvec(np.ravel(turn)).as_matrix(), np.ravel(shift))
