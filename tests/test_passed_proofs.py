@@ -16,7 +16,7 @@ FILES = {
     "tests/changed.py": (ROOT / "tests/changed.py").read_text(encoding="utf-8"),
     "tests/rests_on.py": (ROOT / "tests/rests_on.py").read_text(encoding="utf-8"),
     "tests/passed_proofs.py": (ROOT / "tests/passed_proofs.py").read_text(encoding="utf-8"),
-    "tests/time_left.py": (ROOT / "tests/time_left.py").read_text(encoding="utf-8"),
+    "tests/time_left.py": (ROOT / "tests/time_left.py").read_text(encoding="utf-8") + "\nAT_LEAST = 0\n",
     "tests/test_good.py": f"import pytest\n{MARK}\ndef test_a():\n    pass\n{MARK}\ndef test_b():\n    pass\n"
     "def test_no_proof():\n    raise OSError\n",
     "tests/test_half.py": f"import pytest\n{MARK}\ndef test_a():\n    pass\n{MARK}\ndef test_b():\n    raise OSError\n",
