@@ -23,7 +23,8 @@ ROWS = (
     Finding("views.marks_disagree", Weight.GRAVE, Effect.NO_PROOF,
             "The carrier's marks are not where they were calibrated: their residuals are {times:.1f} times as large as "
             "stated, the largest {px:.2f} px at mark {number} of the view {view}. If that mark is smeared or in glare, "
-            "clean it; else the carrier is bent, or marks were moved: calibrate it again. Then take the views again.",
+            "clean it; else the carrier is bent, or marks were moved: have them measured again. Then take the views "
+            "again.",
             fact="marks_disagree"),
     Finding("views.hangs_on_one_mark", Weight.GRAVE, Effect.NO_PROOF,
             "Without mark {number} of the view {view} the joint moves by {mm:+.3f} mm at the part, more than the "
@@ -31,8 +32,8 @@ ROWS = (
             "again.", fact="joint_hangs_on_one_mark"),
     Finding("views.pair_off", Weight.GRAVE, Effect.NO_PROOF,
             "In the view {view} marks {first} and {second} are {mm:+.3f} mm farther apart than calibrated, {z:.1f} "
-            "times the uncertainty of that: one of them was moved, or the carrier is bent. Calibrate it again, and "
-            "take the views again.", fact="marks_apart"),
+            "times the uncertainty of that: one of them was moved, or the carrier is bent. Have the marks measured "
+            "again, and take the views again.", fact="marks_apart"),
     Finding("views.marks_left_out", Weight.CAUTION, Effect.NONE,
             "Of the view {view} {n} mark is left out, as it does not fit the others: {numbers}. Look whether it is "
             "smeared, in glare, or moved.",
