@@ -15,8 +15,8 @@ from core.pipeline.project.sample_project import clear_unfinished, sample_projec
 @pytest.fixture
 def small(tiny_set, tmp_path, monkeypatch) -> Path:
     """A tiny set stands for the sample; gives the folder projects are put into."""
-    monkeypatch.setattr(module, "sample_set", lambda progress: tiny_set)
-    monkeypatch.setattr(module, "sample_folder", lambda: tmp_path / "cache" / "sample")
+    monkeypatch.setattr(module, "sample_set", lambda progress, has_fan=True: tiny_set)
+    monkeypatch.setattr(module, "sample_folder", lambda has_fan=True: tmp_path / "cache" / "sample")
     return tmp_path / "projects"
 
 
