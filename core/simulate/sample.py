@@ -18,7 +18,7 @@ from core.inspect.uncertainty.part import TARGET_AT_20, Part
 from core.progress import Progress, silent
 from core.simulate.effects.boards import BoardsBeside
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
-from core.simulate.scene.known_planes import corner_planes
+from core.simulate.scene.corner import corner_planes
 from core.sources import text_hash
 
 SAMPLE = "sample.toml"

@@ -15,7 +15,7 @@ from core.files.project.data import Accepted, Project, Sources, new_project
 from core.files.project.keys import finished, left_to_do
 from core.pipeline.live.events import ScanDetail
 from core.scan.preview.shown import PreviewCloud, stripes_alone
-from core.simulate.scene.known_planes import corner_planes
+from core.simulate.scene.corner import corner_planes
 from core.states import NO_FAN
 from tests.workbench.pages import scan_cases
 from workbench.main_window import MainWindow

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,23 +9,19 @@ from scipy.spatial.transform import Rotation
 
 from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.files.recording.rig import KnownPlaneTarget
-from core.image.targets import Charuco, Rectangle, Target
+from core.image.targets import Target
 from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import printed
+from core.simulate.scene.corner import CORNER, FAR, NEAR, corner_planes
 from core.simulate.scene.scene import TABLE_ALBEDO, Board
 from core.simulate.scene.wrong_plates import scaled
 
-PLATE, NEAR, FAR = "plate", "near", "far"
-"""Names of the boards."""
+PLATE = "plate"
+"""Name of the board with the plane target."""
 PLATE_THICK_MM = 3.0
 """Of the plate that lies on the table."""
-CORNER: Mapping[str, tuple[Target, Target]] = {
-    "charuco": (Charuco(19, 5, 14.0, 10.5, "DICT_4X4_100"), Charuco(19, 5, 14.0, 10.5, "DICT_4X4_100", 47)),
-    "rectangle": (Rectangle(266.0, 70.0, 6.0), Rectangle(266.0, 70.0, 6.0)),
-}
-"""Targets of the near and the far board, by their kind. With their margins the boards are 286 × 90 mm, strips of A4."""
 CORNER_BEGINS_MM = 37.0
 """How far behind the table's middle the near board has its rim: where the object no longer reaches."""
 REGION_ROUND_PX = 10
@@ -78,12 +73,6 @@ def stated_planes(scenario: Scenario, boards: tuple[Board, ...], camera: Camera)
         for board in boards
         if board.name in stated
     }
-
-
-def corner_planes(kind: str, tolerance: BoardTolerance) -> dict[str, KnownPlaneTarget]:
-    """State what is printed on the boards of a corner of this `kind`, and how true it is."""
-    near, far = CORNER[kind]
-    return {NEAR: KnownPlaneTarget(near, tolerance), FAR: KnownPlaneTarget(far, tolerance, print_of=NEAR)}
 
 
 def _region(board: Board, camera: Camera) -> tuple[tuple[float, float], ...]:
