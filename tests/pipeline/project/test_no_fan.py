@@ -79,7 +79,7 @@ def test_the_camera_alone_is_the_calibration_of_a_rig_without_a_fan(project: tup
     master = measured_master(folder, None, folder)
     assert master.measured_mm == gauge.thickness_mm and master.same_calibration
     wanted = request(as_set, "scan", SourceChoice("simulated", ""), results, SourceSettings(), ".png")
-    assert wanted.camera is not None and wanted.fan is None
+    assert wanted.camera is not None and wanted.fan is not None and not wanted.fan.lines
     reader = ScanPreviewer(wanted.camera, wanted.fan, has_fan=wanted.rig.has_fan)
     reader.read_reference(read_picture(as_set / "scan" / "reference.png"))
     assert reader.fan_lines == ((),)
