@@ -26,6 +26,7 @@ WITH_A_FOLDER = {
     "artefact": (WRONG, *OUT, "--id", "A"),
     "scan": (WRONG, *OUT),
     "profile": (WRONG, *OUT),
+    "join": (WRONG, *OUT),
     "gauge": (WRONG, *OUT),
     "inspect": (WRONG, "--plan", "{out}/plan.toml"),
     "mesh": (WRONG, "--format", "stl"),

@@ -189,7 +189,7 @@ def test_a_wrong_scenario_is_named_by_its_field(text, named):
 
 def test_the_sample_is_rendered_once_and_then_found(tmp_path, monkeypatch):
     monkeypatch.setattr(sample.platformdirs, "user_cache_dir", lambda *_, **__: str(tmp_path / "cache"))
-    monkeypatch.setattr(sample, "sample_scenario", lambda: SMALL)
+    monkeypatch.setattr(sample, "sample_scenario", lambda has_fan=True: SMALL)
     told = []
     first = sample.sample_set(lambda *what: told.append(what))
     assert open_set(first).frames
