@@ -144,11 +144,11 @@ def test_without_the_wing_a_witness_of_a_stranger_does_not_open_a_project_with_a
     monkeypatch.setattr("core.wing.OURS", "tests.wings.audit.no_wings")
     stranger = WITNESS.replace('"eyes"', f'"{name}"')
     install("lab-eyes", {"lab_eyes": stranger}, {"trisect.wings": {name: "lab_eyes:WING"}})
-    before = contents(project.parent)
+    before = contents(project)
     assert [wing.name for wing in wings()] == [name]
     with pytest.raises(InputError, match="which is written by the wing audit"):
         write_project(project, renamed(project))
-    assert contents(project.parent) == before
+    assert contents(project) == before
 
 
 def test_without_the_wing_a_project_is_packed_where_the_pack_says_the_same(
