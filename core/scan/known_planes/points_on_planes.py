@@ -74,7 +74,8 @@ def lying_on(points: Array, uv: Array, planes: Sequence[PlaneAgreement]) -> NDAr
     for plane in planes:
         near = np.abs(points @ plane.pi - 1) < ON_PLANE_MM * np.linalg.norm(plane.pi)
         outline = plane.outline.astype(np.float32)
-        flags[near] |= [cv2.pointPolygonTest(outline, one, False) >= 0 for one in uv[near].tolist()]
+        within = [cv2.pointPolygonTest(outline, one, False) >= 0 for one in uv[near].tolist()]
+        flags[near] |= np.array(within, dtype=np.bool_)
     return flags
 
 
