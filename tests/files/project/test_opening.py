@@ -216,7 +216,8 @@ def spoilt(tmp_path, change):
     with pytest.raises(InputError) as error:
         read_project(tmp_path)
     sentence = str(error.value)
-    assert sentence.startswith(f"{path}: ")
+    where = sentence.partition(".json: ")[0].removeprefix("…")  # a long path is told by its end
+    assert where and f"{where}.json".endswith("project.json") and str(path).endswith(f"{where}.json")
     assert sentence.endswith(".")
     assert "\n" not in sentence
     return sentence
