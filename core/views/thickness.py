@@ -32,8 +32,8 @@ def upper_face(joined: JoinedCloud, view: int, progress: Progress = silent) -> N
     mine = np.flatnonzero(joined.cloud.view == view)
     cloud = joined.errors.views[view].own(joined.cloud.select(mine))
     pose = joined.joint.poses[view]
-    to_carrier, up = pose.inverse(), pose.rotation[:, 2] * -np.sign(pose.rotation[2, 2])
     side = -np.sign(pose.rotation[2, 2])
+    to_carrier, up = pose.inverse(), pose.rotation[:, 2] * side
     marks = float(joined.joint.carrier.positions[joined.joint.carrier.on(int(side < 0)), 2].mean()) * side
     for plane in find_planes(cloud, progress=progress):
         indices = plane.region.indices
